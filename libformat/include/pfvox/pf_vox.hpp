@@ -1,0 +1,81 @@
+// PF_VOX 1.0: the octree asset on disk. The bytes are described in docs/format-pf_vox.md.
+//
+//     OctreeAsset -> [encodePfVox] -> bytes -> file -> bytes -> [decodePfVox] -> OctreeAsset
+//
+// Everything in a file is untrusted: counts are checked against the bytes present and against Limits before anything is
+// allocated, checksums are verified, and a broken file is refused with section and offset.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <pfvox/octree.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace pfvox {
+
+inline constexpr std::uint16_t kPfVoxVersionMajor = 1;
+inline constexpr std::uint16_t kPfVoxVersionMinor = 0;
+
+/// xxh3-128 of everything that decides the content of an output: inputs, settings, tool and format version.
+/// All zero = unknown.
+struct ContentKey {
+    std::array<std::uint8_t, 16> bytes{};
+    bool operator==(const ContentKey&) const = default;
+    std::string hex() const;
+};
+
+struct EncodeSettings {
+    int zstdLevel = 3;       ///< 1 to 19
+    ContentKey contentKey;   ///< kept in the header, for builds that skip what is up to date
+};
+
+/// The bytes of a PF_VOX file, packed profile. Equal input and settings give equal bytes for any number of threads.
+/// Errors: LimitExceeded when a count does not fit its field; BadReference when indices of the asset do not fit together.
+Result<std::vector<std::byte>> encodePfVox(const OctreeAsset& asset, const EncodeSettings& settings);
+
+/// Reads a whole PF_VOX file. Regions are decoded in parallel in the calling TBB arena.
+/// Errors: BadMagic, UnsupportedVersion, UnsupportedFeature, Truncated, BadValue, BadReference, BadStructure,
+/// ChecksumMismatch, LimitExceeded; each with section and offset.
+Result<OctreeAsset> decodePfVox(std::span<const std::byte> bytes, const Limits& limits, Diagnostics& diagnostics);
+
+/// decodePfVox on a file; errors name it. Further errors: FileNotFound, FileNotReadable.
+Result<OctreeAsset> loadPfVox(const std::filesystem::path& file, const Limits& limits, Diagnostics& diagnostics);
+
+/// One entry of the section table, for reports.
+struct PfVoxSection {
+    std::string fourcc;
+    std::uint32_t regionId = 0;  ///< kNoRegion when the section belongs to the whole file
+    std::string codec;           ///< "raw" or "zstd"
+    std::uint64_t offsetBytes = 0;
+    std::uint64_t storedBytes = 0;
+    std::uint64_t rawBytes = 0;
+};
+
+/// Header and section table, without decoding anything else.
+struct PfVoxHeader {
+    std::uint16_t versionMajor = 0;
+    std::uint16_t versionMinor = 0;
+    std::uint32_t requiredFeatures = 0;
+    std::uint32_t optionalFeatures = 0;
+    std::uint64_t fileBytes = 0;
+    ContentKey contentKey;
+    std::vector<PfVoxSection> sections;
+};
+Result<PfVoxHeader> readPfVoxHeader(std::span<const std::byte> bytes, const Limits& limits);
+
+/// One thing that is wrong with a file. `id` is stable ("section-checksum"), see docs/cli.md.
+struct Finding {
+    std::string id;
+    std::string context;  ///< the section
+    std::uint64_t offsetBytes = 0;
+    std::string message;
+};
+
+/// Every finding, not only the first: decodes each section that can still be reached. Empty = valid.
+std::vector<Finding> validatePfVox(std::span<const std::byte> bytes, const Limits& limits);
+
+}  // namespace pfvox

@@ -1,0 +1,201 @@
+#include <algorithm>
+#include <bit>
+#include <pfvox/assert.hpp>
+#include <pfvox/voxel_model.hpp>
+
+namespace pfvox {
+
+namespace {
+
+constexpr glm::ivec3 regionCoordOf(glm::ivec3 voxel) {
+    return {voxel.x >> kRegionEdgeLog2, voxel.y >> kRegionEdgeLog2, voxel.z >> kRegionEdgeLog2};
+}
+
+constexpr std::uint32_t cellMortonOf(glm::ivec3 voxel) {
+    constexpr std::uint32_t kMask = (1u << (kRegionEdgeLog2 - kBrickEdgeLog2)) - 1;
+    return mortonEncode({(static_cast<std::uint32_t>(voxel.x) >> kBrickEdgeLog2) & kMask,
+                         (static_cast<std::uint32_t>(voxel.y) >> kBrickEdgeLog2) & kMask,
+                         (static_cast<std::uint32_t>(voxel.z) >> kBrickEdgeLog2) & kMask});
+}
+
+constexpr std::uint32_t voxelMortonOf(glm::ivec3 voxel) {
+    return mortonEncode({static_cast<std::uint32_t>(voxel.x) & 7u, static_cast<std::uint32_t>(voxel.y) & 7u,
+                         static_cast<std::uint32_t>(voxel.z) & 7u});
+}
+
+/// Tight box of a brick's voxels in brick coordinates.
+VoxelBox brickBounds(const Brick& brick) {
+    VoxelBox box;
+    for (std::uint32_t word = 0; word < 8; ++word) {
+        for (std::uint64_t bits = brick.occupancy[word]; bits != 0; bits &= bits - 1) {
+            const glm::ivec3 p{mortonDecode(word * 64 + static_cast<std::uint32_t>(std::countr_zero(bits)))};
+            box.include({p, p + 1});
+        }
+    }
+    return box;
+}
+
+}  // namespace
+
+// --- VoxelRegion ---
+
+VoxelRegion::Cell VoxelRegion::cell(std::uint32_t cellMorton) const {
+    if (uniform_) return {.brick = nullptr, .material = uniform_};
+    if (table_.empty()) return {};
+    const std::uint32_t entry = table_[cellMorton];
+    if (entry == kEmpty) return {};
+    if ((entry & kUniformFlag) != 0) return {.brick = nullptr, .material = static_cast<MaterialIndex>(entry & 0xffffu)};
+    return {.brick = &brick(entry), .material = std::nullopt};
+}
+
+void VoxelRegion::makeTable() {
+    if (table_.empty()) {
+        table_.assign(kRegionCells, uniform_ ? (kUniformFlag | *uniform_) : kEmpty);
+        uniform_.reset();
+    }
+}
+
+Brick& VoxelRegion::brickAt(std::uint32_t cellMorton) {
+    makeTable();
+    std::uint32_t& entry = table_[cellMorton];
+    if (entry != kEmpty && (entry & kUniformFlag) == 0) return brick(entry);
+    if (brickCount_ == chunks_.size() * kChunkBricks) {
+        chunks_.push_back(std::make_unique_for_overwrite<Brick[]>(kChunkBricks));
+    }
+    Brick& fresh = brick(static_cast<std::uint32_t>(brickCount_));
+    if (entry == kEmpty) {
+        fresh.occupancy.fill(0);
+    } else {
+        fresh.occupancy.fill(~std::uint64_t{0});
+        fresh.materials.fill(static_cast<MaterialIndex>(entry & 0xffffu));
+    }
+    entry = static_cast<std::uint32_t>(brickCount_++);
+    return fresh;
+}
+
+void VoxelRegion::fillCell(std::uint32_t cellMorton, MaterialIndex material) {
+    makeTable();
+    // A brick that this replaces stays allocated; tiles over voxels are rare.
+    table_[cellMorton] = kUniformFlag | material;
+}
+
+void VoxelRegion::fill(MaterialIndex material) {
+    table_.clear();
+    chunks_.clear();
+    brickCount_ = 0;
+    uniform_ = material;
+}
+
+std::uint64_t VoxelRegion::memoryBytes() const {
+    return sizeof(*this) + table_.capacity() * sizeof(std::uint32_t) + chunks_.size() * kChunkBricks * sizeof(Brick);
+}
+
+// --- VoxelModel ---
+
+std::size_t VoxelModel::CoordHash::operator()(glm::ivec3 c) const noexcept {
+    const auto mix = [](std::uint64_t h, int v) {
+        return (h ^ static_cast<std::uint32_t>(v)) * std::uint64_t{0x9e3779b97f4a7c15};
+    };
+    const std::uint64_t h = mix(mix(mix(0x243f6a8885a308d3u, c.x), c.y), c.z);
+    return static_cast<std::size_t>(h ^ (h >> 32));
+}
+
+VoxelRegion* VoxelModel::findRegion(glm::ivec3 regionCoord) const {
+    const auto found = indexOf_.find(regionCoord);
+    return found == indexOf_.end() ? nullptr : regions_[found->second].get();
+}
+
+VoxelRegion& VoxelModel::regionAt(glm::ivec3 regionCoord) {
+    if (last_ != nullptr && last_->coord() == regionCoord) return *last_;
+    const auto [entry, isNew] = indexOf_.try_emplace(regionCoord, regions_.size());
+    if (isNew) regions_.push_back(std::make_unique<VoxelRegion>(regionCoord));
+    last_ = regions_[entry->second].get();
+    return *last_;
+}
+
+void VoxelModel::set(glm::ivec3 voxel, MaterialIndex material) {
+    regionAt(regionCoordOf(voxel)).brickAt(cellMortonOf(voxel)).set(voxelMortonOf(voxel), material);
+}
+
+bool VoxelModel::clear(glm::ivec3 voxel) {
+    if (!at(voxel)) return false;
+    regionAt(regionCoordOf(voxel)).brickAt(cellMortonOf(voxel)).clear(voxelMortonOf(voxel));
+    return true;
+}
+
+std::optional<MaterialIndex> VoxelModel::at(glm::ivec3 voxel) const {
+    const VoxelRegion* region = findRegion(regionCoordOf(voxel));
+    if (region == nullptr) return std::nullopt;
+    const VoxelRegion::Cell cell = region->cell(cellMortonOf(voxel));
+    if (cell.brick == nullptr) return cell.material;
+    const std::uint32_t m = voxelMortonOf(voxel);
+    if (!cell.brick->occupied(m)) return std::nullopt;
+    return cell.brick->materials[m];
+}
+
+void VoxelModel::fillTile(glm::ivec3 corner, int edgeLog2, MaterialIndex material) {
+    PFVOX_ASSERT(edgeLog2 >= kBrickEdgeLog2 && edgeLog2 <= 15);
+    PFVOX_ASSERT(((corner.x | corner.y | corner.z) & ((1 << edgeLog2) - 1)) == 0);
+    if (edgeLog2 >= kRegionEdgeLog2) {
+        const int n = 1 << (edgeLog2 - kRegionEdgeLog2);
+        const glm::ivec3 first = regionCoordOf(corner);
+        for (int z = 0; z < n; ++z)
+            for (int y = 0; y < n; ++y)
+                for (int x = 0; x < n; ++x) regionAt(first + glm::ivec3{x, y, z}).fill(material);
+        return;
+    }
+    // An aligned cube is a run of consecutive Morton codes.
+    VoxelRegion& region = regionAt(regionCoordOf(corner));
+    const std::uint32_t first = cellMortonOf(corner);
+    const std::uint32_t count = 1u << (3 * (edgeLog2 - kBrickEdgeLog2));
+    for (std::uint32_t c = first; c < first + count; ++c) region.fillCell(c, material);
+}
+
+std::uint64_t VoxelModel::voxelCount() const {
+    std::uint64_t count = 0;
+    for (const auto& region : regions_) {
+        if (region->uniform()) {
+            count += std::uint64_t{1} << (3 * kRegionEdgeLog2);
+            continue;
+        }
+        for (std::uint32_t c = 0; c < static_cast<std::uint32_t>(kRegionCells); ++c) {
+            const VoxelRegion::Cell cell = region->cell(c);
+            if (cell.material) count += kBrickVoxels;
+            if (cell.brick == nullptr) continue;
+            for (const std::uint64_t word : cell.brick->occupancy) {
+                count += static_cast<std::uint64_t>(std::popcount(word));
+            }
+        }
+    }
+    return count;
+}
+
+VoxelBox VoxelModel::bounds() const {
+    VoxelBox box;
+    for (const auto& region : regions_) {
+        const glm::ivec3 origin = region->coord() * kRegionEdge;
+        if (region->uniform()) {
+            box.include({origin, origin + kRegionEdge});
+            continue;
+        }
+        for (std::uint32_t c = 0; c < static_cast<std::uint32_t>(kRegionCells); ++c) {
+            const VoxelRegion::Cell cell = region->cell(c);
+            if (cell.empty()) continue;
+            const glm::ivec3 corner = origin + glm::ivec3{mortonDecode(c)} * kBrickEdge;
+            if (cell.material) {
+                box.include({corner, corner + kBrickEdge});
+            } else if (const VoxelBox local = brickBounds(*cell.brick); !local.empty()) {
+                box.include({corner + local.min, corner + local.max});
+            }
+        }
+    }
+    return box;
+}
+
+std::uint64_t VoxelModel::memoryBytes() const {
+    std::uint64_t bytes = sizeof(*this);
+    for (const auto& region : regions_) bytes += region->memoryBytes();
+    return bytes;
+}
+
+}  // namespace pfvox
