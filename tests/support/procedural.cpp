@@ -49,8 +49,7 @@ void fillBox(VoxelModel& model, const VoxelBox& box,
 }
 
 OctreeAsset build(const VoxelAsset& asset) {
-    DiagnosticList diagnostics;
-    Result<OctreeAsset> built = buildOctrees(asset, BuildSettings{}, Limits{}, diagnostics);
+    Result<OctreeAsset> built = buildOctrees(asset, Limits{});
     if (!built) {
         ADD_FAILURE() << describe(built.error());
         return {};
