@@ -6,7 +6,8 @@
 // The octree loop is that of Laine and Karras (2010, "Efficient Sparse Voxel Octrees", section 4), without contours:
 // all directions are mirrored to be negative, a cell's exit is the nearest of its three lower planes, and the level to
 // pop to is the highest mantissa bit that the step has changed. The stack holds node indices only; the span that the
-// paper keeps beside them serves contours. The loop touches nodes (and far words) and nothing else; materials are
+// paper keeps beside them serves contours. A solid cell that rounding makes the ray miss by a hair counts as met: closed
+// surfaces have no leaks at their edges. The loop touches nodes (and far words) and nothing else; materials are
 // looked up once, for the hit that counts.
 //
 // Rays have any non-zero direction; t counts in its lengths. A ray that starts in a solid voxel hits it at t = 0.
@@ -52,8 +53,8 @@ struct TraceStatistics {
 
 // --- Small helpers ---
 
-// 1 / d with a bound, so that no product of it is infinite or NaN. The bound turns a ray by less than one voxel over
-// the deepest octree.
+// A direction whose longest component is 1, without zeros, so that no quotient by it is infinite or NaN. What is added
+// turns a ray by less than one voxel over the deepest octree.
 vec3 boundedDirection(vec3 d) {
     const float tiny = 1.1920929e-7;  // 2^-23
     return mix(d, mix(vec3(tiny), vec3(-tiny), lessThan(d, vec3(0.0))), lessThan(abs(d), vec3(tiny)));
@@ -130,7 +131,7 @@ bool traceOctree(ModelRecord model, vec3 origin, vec3 direction, inout Hit hit, 
         float tCell = minOf(tExit);
         uint slot = child ^ mirrorBits;
 
-        if ((descriptor >> (8u + slot) & 1u) != 0u && tMin <= tCell) {
+        if ((descriptor >> (8u + slot) & 1u) != 0u) {
             stack[scale] = node;
             if ((descriptor >> slot & 1u) == 0u) {
                 uint inner = descriptor >> 8u & ~descriptor & 0xffu;
@@ -141,7 +142,10 @@ bool traceOctree(ModelRecord model, vec3 origin, vec3 direction, inout Hit hit, 
                 block = TreeBlock(regionBlockOf(block, node, descriptor & 0xffu, slot));
                 node = 0u;
             } else {
-                hit.t = (tEnter + tMin) / speed;
+                // The time of a plane almost along the ray is coarse, so tMin may be: the near planes of this cell know
+                // better, and its exit bounds them.
+                float tNear = maxOf((corner + size) * c - b);
+                hit.t = (tEnter + max(min(tNear, tCell), 0.0)) / speed;
                 hit.block = uvec2(block);
                 hit.node = node;
                 hit.slot = slot;
@@ -160,12 +164,15 @@ bool traceOctree(ModelRecord model, vec3 origin, vec3 direction, inout Hit hit, 
             continue;
         }
 
-        // Advance to the next cell of this node.
+        // Advance to the next cell of this node. At an edge one axis goes first, so that no step is diagonal and nothing
+        // slips through between two solid cells that touch there.
         bvec3 leaves = lessThanEqual(tExit, vec3(tCell));
+        leaves.y = leaves.y && !leaves.x;
+        leaves.z = !(leaves.x || leaves.y);
         uint stepBits = uint(leaves.x) | uint(leaves.y) << 1 | uint(leaves.z) << 2;
         vec3 before = corner;
         corner = mix(corner, corner - size, leaves);
-        tMin = tCell;
+        tMin = max(tMin, tCell);
         if (tMin > tLength) return false;
         child ^= stepBits;
 
@@ -305,13 +312,15 @@ uint materialOf(ModelRecord model, Hit hit) {
     return hoistedMaterial(region, model, hit);
 }
 
-// The face through which the ray entered the leaf: the one of its three near planes that it met last.
-uint enteredFace(vec3 origin, vec3 direction, vec3 near, out bool inside) {
-    vec3 t = (near - origin) / boundedDirection(direction / maxOf(abs(direction)));
+// The face through which the ray entered the leaf: the one of its three near planes that it met last. A plane that the
+// ray runs along is never that one.
+uint enteredAxis(vec3 origin, vec3 direction, vec3 near, out bool inside) {
+    const float never = -kInfinity;
+    float parallel = 1e-6 * maxOf(abs(direction));
+    vec3 t = mix((near - origin) / direction, vec3(never), lessThan(abs(direction), vec3(parallel)));
     float last = maxOf(t);
-    uint axis = t.x == last ? 0u : t.y == last ? 1u : 2u;
     inside = last < 0.0;
-    return 2u * axis + (direction[axis] > 0.0 ? 0u : 1u);
+    return t.x == last ? 0u : t.y == last ? 1u : 2u;
 }
 
 Surface surfaceOf(Scene sceneBuffer, Ray ray, Hit hit) {
@@ -326,8 +335,8 @@ Surface surfaceOf(Scene sceneBuffer, Ray ray, Hit hit) {
     Surface surface;
     bool inside;
     bvec3 positive = greaterThan(direction, vec3(0.0));
-    surface.face = enteredFace(origin, direction, mix(hit.corner + size, hit.corner, positive), inside);
-    uint axis = surface.face >> 1u;
+    uint axis = enteredAxis(origin, direction, mix(hit.corner + size, hit.corner, positive), inside);
+    surface.face = inside ? kFaceInside : 2u * axis + (positive[axis] ? 0u : 1u);
 
     // The leaf may be larger than a voxel: the voxel is the one at the hit point, held within the leaf.
     ivec3 leafMin = ivec3((hit.corner - 1.0) * voxelsPerCube);
@@ -342,7 +351,6 @@ Surface surfaceOf(Scene sceneBuffer, Ray ray, Hit hit) {
     surface.normal = (positive[axis] ? -row : row) / stretch;
     surface.voxelMetres = 1.0 / (stretch * voxelsPerCube);
     surface.position = ray.origin + hit.t * ray.direction;
-    if (inside) surface.face = kFaceInside;
     surface.material = materialOf(model, hit);
     surface.level = kCubeScale - hit.scale;
     return surface;

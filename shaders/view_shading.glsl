@@ -30,8 +30,8 @@ vec3 heatColour(float x) {
 
 vec3 skyRadiance(ViewParameters view, vec3 direction) {
     float up = direction.y;
-    vec3 above = mix(view.skyHorizon, view.skyZenith, sqrt(clamp(up, 0.0, 1.0)));
-    return mix(view.skyGround, above, smoothstep(-0.06, 0.02, up));
+    if (up >= 0.0) return mix(view.skyHorizon, view.skyZenith, sqrt(up));
+    return mix(view.skyHorizon, view.skyGround, smoothstep(0.0, 0.9, -up));
 }
 
 // Mean radiance that an unoccluded Lambert surface sees, by its normal.
@@ -58,11 +58,15 @@ vec3 litRadiance(ViewParameters view, Scene scene, Surface surface, inout TraceS
     return radiance;
 }
 
-// Straight up to 0.7, then a shoulder that reaches 1 at infinity: colours of the source stay what they are.
+// Straight up to 0.7, then a shoulder that reaches 1 at infinity: colours of the source stay what they are. The curve is
+// that of the strongest channel, so that a lamp keeps its hue; only what is far too bright turns towards white.
 vec3 toneMap(vec3 radiance) {
     const float knee = 0.7;
-    vec3 over = max(radiance - knee, vec3(0.0)) / (1.0 - knee);
-    return min(radiance, vec3(knee)) + (1.0 - knee) * (1.0 - exp(-over));
+    float strongest = maxOf(radiance);
+    if (strongest <= knee) return radiance;
+    float mapped = knee + (1.0 - knee) * (1.0 - exp((knee - strongest) / (1.0 - knee)));
+    float glare = 0.6 * (1.0 - exp(-0.12 * (strongest - knee)));
+    return mix(radiance * (mapped / strongest), vec3(mapped), glare);
 }
 
 vec3 srgbFromLinear(vec3 c) {

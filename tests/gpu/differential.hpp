@@ -23,8 +23,9 @@ struct RayFamily {
     std::vector<FloatRay> rays;
 };
 
-/// Counts of one comparison. A ray on which the sides differ is a tie when the reference gives the GPU's
-/// answer for some ray within kTieDistance of it, else a disagreement.
+/// Counts of one comparison. Where the sides differ, it is a tie if the ray passes the voxel that the GPU
+/// names within the tie distance, and a ray within that distance of this one passes what the reference met
+/// before; else it is a disagreement.
 struct Comparison {
     std::size_t rays = 0;
     std::size_t hits = 0;

@@ -78,10 +78,14 @@ TEST(ReferenceCaster, AgreesWithSmallStepsThroughTheModel) {
             // ends.
             ASSERT_TRUE(hit) << i;
             EXPECT_LE(hit->t, t + 1e-9) << i;
-            if (hit->t > t - 2.0 * kStep) EXPECT_EQ(hit->material, *found) << i;
+            if (hit->t > t - 2.0 * kStep) {
+                EXPECT_EQ(hit->material, *found) << i;
+            }
             break;
         }
-        if (hit) EXPECT_EQ(asset.models[0].at(hit->voxel), hit->material) << i;
+        if (hit) {
+            EXPECT_EQ(asset.models[0].at(hit->voxel), hit->material) << i;
+        }
     }
 }
 

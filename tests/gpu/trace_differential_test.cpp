@@ -1,5 +1,6 @@
 // octree_trace.glsl against the reference caster: hit, distance, instance, voxel, face, normal and material.
 #include <cmath>
+#include <cstdlib>
 #include <iostream>
 #include <pfvox/gpu_scene.hpp>
 #include <pfvox/ray_query.hpp>
@@ -14,8 +15,15 @@ constexpr std::size_t kRaysPerFamily = 2500;
 
 class TraceDifferential : public GpuTest {
   protected:
+    /// PFVOX_TEST_RAYS multiplies the number of rays, for long runs.
+    static std::size_t rayFactor() {
+        const char* const factor = std::getenv("PFVOX_TEST_RAYS");
+        return factor != nullptr ? std::strtoul(factor, nullptr, 10) : 1;
+    }
+
     /// All families of rays through the scene. Prints counts; any disagreement fails.
-    static void check(const VoxelAsset& voxels, std::size_t raysPerFamily = kRaysPerFamily) {
+    static void check(const VoxelAsset& voxels, std::size_t usualRaysPerFamily = kRaysPerFamily) {
+        const std::size_t raysPerFamily = usualRaysPerFamily * rayFactor();
         const OctreeAsset asset = build(voxels);
         Random random(2026);
         for (const RayFamily& family : rayFamilies(random, asset, raysPerFamily)) {

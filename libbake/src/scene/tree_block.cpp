@@ -8,8 +8,6 @@ namespace pfvox::gpu::detail {
 
 namespace {
 
-constexpr std::size_t kBytePaletteEntries = 256;
-
 std::uint32_t count32(std::size_t count) {
     PFVOX_ASSERT(count <= 0xffffffffu);
     return static_cast<std::uint32_t>(count);
@@ -48,27 +46,11 @@ std::size_t offsetOf(std::uint32_t word) {
     return sizeof(shared::TreeBlockHeader) + 4 * std::size_t{word};
 }
 
-/// Values are 16-bit in memory; palettes of at most 256 entries need one byte.
-void putValues(const OctreeRegion& region, std::uint32_t valueBits, BlockWriter& writer) {
-    if (valueBits == 16) {
-        writer.put(std::span(region.values));
-        return;
-    }
-    std::array<std::uint8_t, 4096> narrow;
-    for (std::size_t done = 0; done < region.values.size();) {
-        const std::size_t n = std::min(narrow.size(), region.values.size() - done);
-        for (std::size_t i = 0; i < n; ++i) narrow[i] = static_cast<std::uint8_t>(region.values[done + i]);
-        writer.put(std::span<const std::uint8_t>(narrow.data(), n));
-        done += n;
-    }
-}
-
 }  // namespace
 
 BlockLayout layoutOfRegion(const OctreeRegion& region) {
-    const std::uint32_t valueBits = region.palette.size() <= kBytePaletteEntries ? 8 : 16;
     BlockLayout layout;
-    layout.valueBytes = region.values.size() * (valueBits / 8);
+    layout.valueBytes = region.values.size();
     std::size_t words = region.tree.nodes.size();
     layout.header.lookupOffset = count32(words);
     words += region.lookup.size();
@@ -78,7 +60,7 @@ BlockLayout layoutOfRegion(const OctreeRegion& region) {
     words += region.palette.size();
     layout.header.farOffset = count32(words);
     words += region.tree.farTable.size();
-    layout.header.valueBits = valueBits;
+    layout.header.valueBits = 8 * count32(region.valueBytes());
     finish(layout, words);
     return layout;
 }
@@ -103,7 +85,7 @@ void writeRegion(const OctreeRegion& region, const BlockLayout& layout, std::uin
     writer.put(layout.header);
     writer.put(std::span(region.tree.nodes));
     writer.put(std::span(region.lookup));
-    putValues(region, layout.header.valueBits, writer);
+    writer.put(std::span(region.values));
     writer.padTo(offsetOf(layout.header.paletteOffset));
     for (const MaterialIndex material : region.palette) writer.put(firstMaterial + std::uint32_t{material});
     writer.put(std::span(region.tree.farTable));

@@ -128,7 +128,7 @@ class ModelWalk {
                                                 std::uint32_t slot) {
         const std::uint32_t lookup = region.lookup[index];
         if ((lookup >> slot & 1u) == 0) return std::nullopt;
-        const std::uint32_t value = region.values[(lookup >> 8) + rank(lookup & 0xffu, slot)];
+        const std::uint32_t value = region.value((lookup >> 8) + rank(lookup & 0xffu, slot));
         return region.palette[value];
     }
 
