@@ -142,10 +142,7 @@ bool traceOctree(ModelRecord model, vec3 origin, vec3 direction, inout Hit hit, 
                 block = TreeBlock(regionBlockOf(block, node, descriptor & 0xffu, slot));
                 node = 0u;
             } else {
-                // The time of a plane almost along the ray is coarse, so tMin may be: the near planes of this cell know
-                // better, and its exit bounds them.
-                float tNear = maxOf((corner + size) * c - b);
-                hit.t = (tEnter + max(min(tNear, tCell), 0.0)) / speed;
+                hit.t = (tEnter + tMin) / speed;
                 hit.block = uvec2(block);
                 hit.node = node;
                 hit.slot = slot;

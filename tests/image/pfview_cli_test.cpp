@@ -19,7 +19,7 @@ using ::testing::IsEmpty;
 using ::testing::StartsWith;
 namespace fs = std::filesystem;
 
-struct Run {
+struct Outcome {
     int exitCode = -1;
     std::string out;
     std::string err;
@@ -41,7 +41,7 @@ class PfviewCli : public ::testing::Test {
     }
 
     /// Runs in the test's own folder; arguments as a shell reads them.
-    Run run(const std::string& arguments) const {
+    Outcome run(const std::string& arguments) const {
         const std::string command =
             "cd '" + folder_.string() + "' && '" PFVOX_PFVIEW "' " + arguments + " > out 2> err";
         const int status = std::system(command.c_str());
@@ -64,7 +64,7 @@ class PfviewCli : public ::testing::Test {
 
 TEST_F(PfviewCli, WritesAScreenshot) {
     writeRoom("my room.pf_vox");
-    const Run r = run("'my room.pf_vox' --screenshot a.png --size 64x48 --samples 1 --validate");
+    const Outcome r = run("'my room.pf_vox' --screenshot a.png --size 64x48 --samples 1 --validate");
     EXPECT_EQ(r.exitCode, 0) << r.err;
     EXPECT_THAT(r.out, IsEmpty());
     const auto picture = viewer::readPng(folder_ / "a.png");
@@ -75,7 +75,7 @@ TEST_F(PfviewCli, WritesAScreenshot) {
 
 TEST_F(PfviewCli, WritesStatisticsAndNothingElseToStdout) {
     writeRoom("a.pf_vox");
-    const Run r =
+    const Outcome r =
         run("a.pf_vox --screenshot a.png --size 32x32 --view steps --camera 3,2,20,3,2,3,30 --stats-json -");
     EXPECT_EQ(r.exitCode, 0) << r.err;
     EXPECT_THAT(r.out, StartsWith("{"));
@@ -85,7 +85,7 @@ TEST_F(PfviewCli, WritesStatisticsAndNothingElseToStdout) {
 
 TEST_F(PfviewCli, HelpAndVersionGoToStdout) {
     for (const char* const argument : {"--help", "-h", "--version"}) {
-        const Run r = run(argument);
+        const Outcome r = run(argument);
         EXPECT_EQ(r.exitCode, 0);
         EXPECT_THAT(r.out, HasSubstr("pfview"));
         EXPECT_THAT(r.err, IsEmpty());
@@ -101,7 +101,7 @@ TEST_F(PfviewCli, WrongUsageIsShortAndOnStderr) {
           picture + "--camera 1,2,3,1,2,3", picture + "--camera 1,2,3,nan,2,3",
           picture + "--camera 1,2,3,4,5,6,180", picture + "--view nothing", picture + "--samples 0",
           picture + "--samples 1e9", picture + "surplus"}) {
-        const Run r = run(arguments);
+        const Outcome r = run(arguments);
         EXPECT_EQ(r.exitCode, 2) << arguments;
         EXPECT_THAT(r.out, IsEmpty()) << arguments;
         EXPECT_THAT(r.err, StartsWith("pfview: ")) << arguments;
@@ -112,7 +112,7 @@ TEST_F(PfviewCli, WrongUsageIsShortAndOnStderr) {
 
 TEST_F(PfviewCli, SourceFileGetsTheCommandToRun) {
     write("hall.vox", "VOX \x96\0\0\0 and so on, long enough to have a header of some kind ..............");
-    const Run r = run("hall.vox --screenshot a.png");
+    const Outcome r = run("hall.vox --screenshot a.png");
     EXPECT_EQ(r.exitCode, 4);
     EXPECT_THAT(r.err, HasSubstr("vox2pf 'hall.vox' -o 'hall.pf_vox'"));
     EXPECT_FALSE(fs::exists(folder_ / "a.png"));
@@ -122,7 +122,7 @@ TEST_F(PfviewCli, MissingFileUnwritablePictureAndUnknownDevice) {
     writeRoom("a.pf_vox");
     EXPECT_EQ(run("none.pf_vox --screenshot a.png").exitCode, 3);
     EXPECT_EQ(run("a.pf_vox --size 8x8 --screenshot /dev/null/a.png").exitCode, 3);
-    const Run r = run("a.pf_vox --screenshot a.png --device 'no such device'");
+    const Outcome r = run("a.pf_vox --screenshot a.png --device 'no such device'");
     EXPECT_EQ(r.exitCode, 6);
     EXPECT_THAT(r.err, HasSubstr("there is: 0: "));
 }
@@ -130,7 +130,7 @@ TEST_F(PfviewCli, MissingFileUnwritablePictureAndUnknownDevice) {
 TEST_F(PfviewCli, TruncatedFileIsInvalidInput) {
     writeRoom("a.pf_vox");
     fs::resize_file(folder_ / "a.pf_vox", fs::file_size(folder_ / "a.pf_vox") / 2);
-    const Run r = run("a.pf_vox --screenshot a.png");
+    const Outcome r = run("a.pf_vox --screenshot a.png");
     EXPECT_EQ(r.exitCode, 4);
     EXPECT_THAT(r.err, HasSubstr("a.pf_vox"));
     EXPECT_FALSE(fs::exists(folder_ / "a.png"));
@@ -143,7 +143,7 @@ TEST_F(PfviewCli, FailedRunKeepsTheOldPicture) {
 }
 
 TEST_F(PfviewCli, ListsDevices) {
-    const Run r = run("--list-devices");
+    const Outcome r = run("--list-devices");
     EXPECT_EQ(r.exitCode, 0);
     EXPECT_THAT(r.out, StartsWith("0  "));
 }

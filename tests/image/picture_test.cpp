@@ -32,7 +32,7 @@ class PictureTest : public GpuTest {
     }
 };
 
-constexpr viewer::PictureSettings kSmall{.width = 320, .height = 240};
+const viewer::PictureSettings kSmall{.width = 320, .height = 240, .lighting = {}};
 
 /// The room twice, one turned and mirrored, and a model of several regions in the background.
 VoxelAsset composedScene() {
