@@ -267,7 +267,7 @@ struct Surface {
     uint face;
     ivec3 voxel;         // model voxels
     uint material;       // of the scene
-    uint level;          // of the leaf; 0 = root
+    uint leafLog2;       // edge of the leaf = 2^leafLog2 voxels
     float voxelMetres;   // extent of a voxel along the normal
 };
 
@@ -349,7 +349,7 @@ Surface surfaceOf(Scene sceneBuffer, Ray ray, Hit hit) {
     surface.voxelMetres = 1.0 / (stretch * voxelsPerCube);
     surface.position = ray.origin + hit.t * ray.direction;
     surface.material = materialOf(model, hit);
-    surface.level = kCubeScale - hit.scale;
+    surface.leafLog2 = model.depth + hit.scale - kCubeScale;
     return surface;
 }
 

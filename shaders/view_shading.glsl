@@ -34,10 +34,12 @@ vec3 skyRadiance(ViewParameters view, vec3 direction) {
     return mix(view.skyHorizon, view.skyGround, smoothstep(0.0, 0.9, -up));
 }
 
-// Mean radiance that an unoccluded Lambert surface sees, by its normal.
+// Mean radiance that a Lambert surface sees, by its normal alone: no occlusion. A faint fill from the side keeps the
+// faces of a shaded voxel apart.
 vec3 ambientRadiance(ViewParameters view, vec3 normal) {
     vec3 above = 0.6 * view.skyZenith + 0.4 * view.skyHorizon;
-    return mix(view.skyGround, above, 0.5 + 0.5 * normal.y);
+    float fill = 1.0 + 0.18 * dot(normal, vec3(0.8, 0.0, -0.6));
+    return fill * mix(view.skyGround, above, 0.5 + 0.5 * normal.y);
 }
 
 float sunVisibility(ViewParameters view, Scene scene, Surface surface, inout TraceStatistics statistics) {
@@ -74,6 +76,9 @@ vec3 srgbFromLinear(vec3 c) {
     return mix(12.92 * c, 1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, greaterThan(c, vec3(0.0031308)));
 }
 
+// Of a colour that is meant for the screen as it is: the encoding at the end is taken back.
+vec3 linearFromDisplay(vec3 c) { return pow(c, vec3(2.2)); }
+
 // Linear display colour of one camera ray, tone mapped where it is radiance.
 vec3 viewColour(ViewParameters view, Scene scene, Ray ray, inout TraceStatistics statistics, out bool struck) {
     Hit hit = traceClosest(scene, ray, statistics);
@@ -86,9 +91,9 @@ vec3 viewColour(ViewParameters view, Scene scene, Ray ray, inout TraceStatistics
     Surface surface = surfaceOf(scene, ray, hit);
     switch (view.mode) {
         case kViewAlbedo: return Materials(scene.header.materials).at[surface.material].albedo;
-        case kViewNormals: return 0.5 + 0.5 * surface.normal;
-        case kViewMaterial: return indexColour(surface.material);
-        case kViewDepth: return heatColour(float(surface.level) / 12.0);
+        case kViewNormals: return linearFromDisplay(0.5 + 0.5 * surface.normal);
+        case kViewMaterial: return linearFromDisplay(indexColour(surface.material));
+        case kViewDepth: return heatColour(1.0 - float(surface.leafLog2) / 7.0);
         default: return toneMap(view.exposure * litRadiance(view, scene, surface, statistics));
     }
 }

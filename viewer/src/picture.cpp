@@ -33,7 +33,7 @@ const NamedMode& entryOf(ViewMode mode) {
 }
 
 shared::ViewParameters parametersOf(const ViewCamera& camera, const PictureSettings& settings) {
-    constexpr float kStepsAtHotEnd = 160.0f;
+    constexpr float kStepsAtHotEnd = 96.0f;
     const CameraFrame frame = frameOf(camera);
     const double tanY = std::tan(glm::radians(0.5 * camera.fovYDegrees));
     const double tanX = tanY * settings.width / settings.height;

@@ -28,7 +28,7 @@ enum class ViewMode : std::uint8_t {
     Albedo,    ///< base colour
     Normals,   ///< world normal, [-1, 1] to [0, 1]
     Material,  ///< a colour for each material index
-    Depth,     ///< level of the leaf in the octree: cold = large leaf
+    Depth,     ///< edge of the leaf in the octree: hot = one voxel, cold = 64 and more
     Steps,     ///< iterations of the traversal: cold = few
 };
 std::optional<ViewMode> viewModeFrom(std::string_view name);
