@@ -68,7 +68,7 @@ TEST(PfVoxHostile, EveryFlippedBitIsNoticedOrChangesNothing) {
     for (std::size_t i = 0; i < file.size(); ++i) {
         for (int bit = 0; bit < 8; ++bit) {
             file[i] ^= std::byte{1} << bit;
-            // zstd frame headers have a bit without meaning: what it decodes to must be what was encoded.
+            // zstd frames have bits without meaning: what it decodes to must be what was encoded.
             if (const auto asset = decode(file)) {
                 ASSERT_EQ(encodePfVox(*asset, {}).value(), original) << "byte " << i << " bit " << bit;
                 ++harmless;
@@ -76,7 +76,7 @@ TEST(PfVoxHostile, EveryFlippedBitIsNoticedOrChangesNothing) {
             file[i] = original[i];
         }
     }
-    EXPECT_LE(harmless, test::openFile(original).parts.size());
+    EXPECT_LT(harmless, original.size() * 8 / 100);
 }
 
 TEST(PfVoxHostile, RandomDamageBehindTheHashesNeverCrashes) {
