@@ -80,7 +80,7 @@ bool letsLightThrough(MaterialType type) {
 /// changes it, and those must not make a diffuse wall shine.
 void keepPropertiesOfType(Material& material) {
     const MaterialType type = material.type;
-    if (type != MaterialType::Metal && type != MaterialType::Plastic && type != MaterialType::Blend) {
+    if (type != MaterialType::Metal && type != MaterialType::Blend) {
         material.metalness = 0.0f;
     }
     if (type != MaterialType::Emit) material.emissionStrength = 0.0f;
@@ -131,10 +131,6 @@ MaterialRecord materialFromDict(const Dict& properties) {
     Material& material = record.material;
     PropertyReader reader(properties, record);
     material.type = readType(properties, reader, record);
-    if (material.type == MaterialType::Metal && reader.number("_plastic", kPositive).value_or(0.0f) > 0.0f) {
-        material.type = MaterialType::Plastic;
-    }
-
     // The single strength of older files, whose meaning depends on the type.
     const auto weight = reader.number("_weight", kFraction);
     const auto metal = reader.number("_metal", kFraction);
@@ -181,7 +177,7 @@ Result<MaterialChunk> readMatt(Chunk& chunk) {
         if (((static_cast<std::uint32_t>(propertyBits) >> i) & 1u) == 0) continue;
         PFVOX_TRY(const float, value, chunk.readFloat(std::string("property ") + kNames[i]));
         values[i] = fraction(value, kNames[i]);
-        if (i >= Attenuation) record.unmappedKeys.emplace(kNames[i]);
+        if (i == Plastic || i >= Attenuation) record.unmappedKeys.emplace(kNames[i]);
     }
 
     constexpr std::array kTypes{MaterialType::Diffuse, MaterialType::Metal, MaterialType::Glass,
@@ -193,9 +189,6 @@ Result<MaterialChunk> readMatt(Chunk& chunk) {
     }
     Material& material = record.material;
     material.type = kTypes[static_cast<std::size_t>(type)];
-    if (material.type == MaterialType::Metal && values[Plastic].value_or(0.0f) > 0.0f) {
-        material.type = MaterialType::Plastic;
-    }
     const float strength = fraction(weight, "weight");
     material.metalness = material.emissionStrength = material.transparency = strength;
     material.roughness = values[Roughness].value_or(material.roughness);
