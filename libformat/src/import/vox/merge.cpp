@@ -3,11 +3,20 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <bit>
-#include <pfvox/assert.hpp>
 
 namespace pfvox::import::vox {
 
 namespace {
+
+/// Morton codes of the coordinates in a brick, spread for the x axis.
+constexpr std::array<std::uint32_t, kBrickEdge> kSpread{0, 1, 8, 9, 64, 65, 72, 73};
+
+constexpr std::uint32_t mortonInBrick(glm::ivec3 voxel) {
+    const auto spread = [](int coordinate) {
+        return kSpread[static_cast<std::size_t>(coordinate & (kBrickEdge - 1))];
+    };
+    return spread(voxel.x) | (spread(voxel.y) << 1) | (spread(voxel.z) << 2);
+}
 
 /// Writes voxels anywhere in a model, remembering the last brick, and keeps account of the memory this takes.
 class ModelWriter {
@@ -18,7 +27,7 @@ class ModelWriter {
     bool set(glm::ivec3 voxel, MaterialIndex material) {
         const glm::ivec3 cell = voxel >> kBrickEdgeLog2;
         if (brick_ == nullptr || cell != cell_) findBrick(cell);
-        const std::uint32_t morton = mortonEncode(glm::uvec3(voxel & (kBrickEdge - 1)));
+        const std::uint32_t morton = mortonInBrick(voxel);
         const bool replaces = brick_->occupied(morton);
         brick_->set(morton, material);
         return replaces;
@@ -67,20 +76,25 @@ std::uint64_t writeBrick(const Brick& brick, glm::ivec3 corner, const BrickOffse
     return replaced;
 }
 
-std::uint64_t writeInstance(const VoxelModel& model, const GridTransform& worldFromModel,
-                            ModelWriter& writer) {
-    const BrickOffsets offsets = rotatedOffsets(worldFromModel.rotation);
-    std::uint64_t replaced = 0;
+/// A brick of a model and the voxel at its minimum corner.
+struct PlacedBrick {
+    const Brick* brick;
+    glm::i64vec3 corner;
+};
+
+/// Gathered once a model, because a model may have many instances and the table of a region many empty cells.
+std::vector<PlacedBrick> bricksOf(const VoxelModel& model) {
+    std::vector<PlacedBrick> bricks;
     for (const auto& region : model.regions()) {
         for (std::uint32_t cell = 0; cell < static_cast<std::uint32_t>(kRegionCells); ++cell) {
             const Brick* brick = region->cell(cell).brick;
             if (brick == nullptr) continue;
-            const glm::i64vec3 corner{region->coord() * kRegionEdge +
-                                      glm::ivec3(mortonDecode(cell)) * kBrickEdge};
-            replaced += writeBrick(*brick, glm::ivec3(worldFromModel.applyToCell(corner)), offsets, writer);
+            const glm::ivec3 corner =
+                region->coord() * kRegionEdge + glm::ivec3(mortonDecode(cell)) * kBrickEdge;
+            bricks.push_back({.brick = brick, .corner = glm::i64vec3(corner)});
         }
     }
-    return replaced;
+    return bricks;
 }
 
 Result<void> checkLimits(const VoxelModel& model, const ModelWriter& writer, const Limits& limits) {
@@ -120,8 +134,19 @@ Result<MergedModel> mergeInstances(const std::vector<VoxelModel>& models,
                                    std::span<const GridInstance> instances, const Limits& limits) {
     MergedModel merged;
     ModelWriter writer(merged.model);
+    std::vector<std::vector<PlacedBrick>> bricks(models.size());
+    Rotation rotation;
+    BrickOffsets offsets = rotatedOffsets(rotation);
     for (const GridInstance& instance : instances) {
-        merged.replacedVoxels += writeInstance(models[instance.model], instance.worldFromModel, writer);
+        if (bricks[instance.model].empty()) bricks[instance.model] = bricksOf(models[instance.model]);
+        if (instance.worldFromModel.rotation != rotation) {
+            rotation = instance.worldFromModel.rotation;
+            offsets = rotatedOffsets(rotation);
+        }
+        for (const PlacedBrick& placed : bricks[instance.model]) {
+            const glm::ivec3 corner{instance.worldFromModel.applyToCell(placed.corner)};
+            merged.replacedVoxels += writeBrick(*placed.brick, corner, offsets, writer);
+        }
         PFVOX_CHECK(checkLimits(merged.model, writer, limits));
     }
     PFVOX_CHECK(checkDepth(merged.model, limits));

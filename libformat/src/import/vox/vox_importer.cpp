@@ -19,7 +19,8 @@ namespace {
 /// A file named .vox that has the chunks of MagicaVoxel behind a damaged start.
 bool hasDamagedMagic(std::span<const std::byte> bytes) {
     constexpr std::size_t kSearchedBytes = 16;
-    return io::asText(bytes.first(std::min(bytes.size(), kSearchedBytes))).find("MAIN") != std::string_view::npos;
+    return io::asText(bytes.first(std::min(bytes.size(), kSearchedBytes))).find("MAIN") !=
+           std::string_view::npos;
 }
 
 bool recognises(const SourceBytes& source) {
