@@ -29,7 +29,7 @@ Rotation Rotation::inverse() const {
 
 std::optional<Rotation> decodeRotation(std::int32_t byte) {
     if (byte < 0 || byte > 127) return std::nullopt;
-    const auto bits = static_cast<std::uint8_t>(byte);
+    const auto bits = static_cast<std::uint32_t>(byte);
     const auto first = static_cast<std::uint8_t>(bits & 3u);
     const auto second = static_cast<std::uint8_t>((bits >> 2) & 3u);
     if (first == 3 || second == 3 || first == second) return std::nullopt;
