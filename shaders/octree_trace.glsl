@@ -124,7 +124,8 @@ bool traceOctree(ModelRecord model, vec3 origin, vec3 direction, inout Hit hit, 
     vec3 corner = mix(vec3(1.0), vec3(1.5), upper);
     uint child = uint(upper.x) | uint(upper.y) << 1 | uint(upper.z) << 2;
 
-    for (uint step = 0u; step < kMaxTraceSteps; ++step) {
+    uint lastStep = statistics.steps + kMaxTraceSteps;
+    while (statistics.steps != lastStep) {
         ++statistics.steps;
         if (descriptor == 0u) descriptor = block.words[node];
         vec3 tExit = corner * c - b;

@@ -3,6 +3,7 @@
 
 #include <numeric>
 #include <pfvox/gpu.hpp>
+#include <pfvox_shaders/shaders.hpp>
 
 #include "support/gpu_fixture.hpp"
 
@@ -10,6 +11,7 @@ namespace pfvox::test {
 namespace {
 
 using DeviceTest = GpuTest;
+using ::testing::Contains;
 using ::testing::HasSubstr;
 
 std::vector<std::uint32_t> runningNumbers(std::size_t count) {
@@ -78,6 +80,14 @@ TEST_F(DeviceTest, AccountsForItsMemory) {
     }
     EXPECT_EQ(device().memory().currentBytes, before.currentBytes);
     EXPECT_GE(device().memory().peakBytes, before.currentBytes + (1 << 20));
+}
+
+TEST_F(DeviceTest, ValidationMessagesAreCollected) {
+    // A device of its own: the one of the fixture has to stay silent.
+    PFVOX_ASSERT_VALUE(gpu::Device, watched, gpu::Device::open({.validation = true}));
+    constexpr std::uint32_t kMoreThanAnyDeviceHas = 1u << 16;
+    const auto program = watched.createProgram(shaders::kLayoutCheck, kMoreThanAnyDeviceHas, "wrong on purpose");
+    EXPECT_THAT(watched.validationMessages(), Contains(HasSubstr("VUID")));
 }
 
 TEST_F(DeviceTest, TooLargeABufferIsOutOfMemory) {

@@ -250,17 +250,17 @@ std::vector<gpu::GpuHit> castOnGpu(gpu::Device& device, const OctreeAsset& asset
     for (const FloatRay& ray : rays) gpuRays.push_back({.origin = ray.origin, .direction = ray.direction});
     DiagnosticList diagnostics;
     const gpu::ScenePart part{.asset = &asset};
-    const auto cast = [&]() -> Result<std::vector<gpu::GpuHit>> {
+    const auto cast = [&]() -> Result<gpu::RayBatch> {
         PFVOX_TRY(const gpu::Scene, scene, gpu::Scene::build(device, {&part, 1}, diagnostics));
         PFVOX_TRY(const gpu::RayQuery, query, gpu::RayQuery::create(device));
         return query.cast(device, scene, gpuRays, gpu::RayMode::ClosestHit);
     };
-    Result<std::vector<gpu::GpuHit>> hits = cast();
-    if (!hits) {
-        ADD_FAILURE() << pfvox::describe(hits.error());
+    Result<gpu::RayBatch> batch = cast();
+    if (!batch) {
+        ADD_FAILURE() << pfvox::describe(batch.error());
         return {};
     }
-    return *std::move(hits);
+    return std::move(batch->hits);
 }
 
 }  // namespace

@@ -18,9 +18,9 @@ class SceneTest : public GpuTest {
                                gpu::RayMode mode = gpu::RayMode::ClosestHit) {
         Result<gpu::RayQuery> query = gpu::RayQuery::create(device());
         EXPECT_TRUE(query);
-        Result<std::vector<gpu::GpuHit>> hits = query->cast(device(), scene, {&ray, 1}, mode);
-        EXPECT_TRUE(hits && hits->size() == 1);
-        return hits->front();
+        Result<gpu::RayBatch> batch = query->cast(device(), scene, {&ray, 1}, mode);
+        EXPECT_TRUE(batch && batch->hits.size() == 1);
+        return batch->hits.front();
     }
     static inline std::unique_ptr<DiagnosticList> diagnostics_;
 };

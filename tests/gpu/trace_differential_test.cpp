@@ -86,6 +86,20 @@ TEST_F(TraceDifferential, RoomWithLargeLeavesAndHoistedMaterials) {
     check(demoRoom());
 }
 
+TEST_F(TraceDifferential, FarPointers) {
+    Random random(6);
+    VoxelAsset asset;
+    asset.materials = greyMaterials(40);
+    VoxelModel& model = asset.models.emplace_back();
+    for (int i = 0; i < 150000; ++i) {
+        model.set({random.integer(0, 255), random.integer(0, 255), random.integer(0, 255)},
+                  static_cast<MaterialIndex>(random.integer(0, 39)));
+    }
+    asset.instances.emplace_back();
+    ASSERT_FALSE(build(asset).models[0].regions[0].tree.farTable.empty());
+    check(asset, 1500);
+}
+
 TEST_F(TraceDifferential, SingleVoxel) {
     VoxelAsset asset;
     asset.materials = greyMaterials(1);

@@ -36,14 +36,19 @@ enum class RayMode : std::uint8_t {
     AnyHit,  ///< only `hit`, `steps` and `capped` are set
 };
 
+struct RayBatch {
+    std::vector<GpuHit> hits;  ///< hits[i] belongs to rays[i]
+    double gpuMs = 0.0;  ///< of the launch, transfers not counted; 0 where the device has no time stamps
+};
+
 class RayQuery {
   public:
     /// Errors: those of Device::createProgram.
     static Result<RayQuery> create(Device& device);
 
-    /// Casts all rays and waits. hits[i] belongs to rays[i]. Errors: GpuOutOfMemory, GpuLost.
-    Result<std::vector<GpuHit>> cast(Device& device, const Scene& scene, std::span<const GpuRay> rays,
-                                     RayMode mode) const;
+    /// Casts all rays and waits. Errors: GpuOutOfMemory, GpuLost.
+    Result<RayBatch> cast(Device& device, const Scene& scene, std::span<const GpuRay> rays,
+                          RayMode mode) const;
 
   private:
     explicit RayQuery(Program program) : program_(std::move(program)) {}

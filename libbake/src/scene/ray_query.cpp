@@ -33,9 +33,9 @@ Result<RayQuery> RayQuery::create(Device& device) {
     return RayQuery(std::move(program));
 }
 
-Result<std::vector<GpuHit>> RayQuery::cast(Device& device, const Scene& scene, std::span<const GpuRay> rays,
-                                           RayMode mode) const {
-    if (rays.empty()) return std::vector<GpuHit>{};
+Result<RayBatch> RayQuery::cast(Device& device, const Scene& scene, std::span<const GpuRay> rays,
+                                RayMode mode) const {
+    if (rays.empty()) return RayBatch{};
     std::vector<shared::RayRecord> records(rays.size());
     std::ranges::transform(rays, records.begin(), recordOf);
     PFVOX_TRY(const Buffer, rayBuffer,
@@ -55,13 +55,13 @@ Result<std::vector<GpuHit>> RayQuery::cast(Device& device, const Scene& scene, s
         .program = &program_,
         .pushConstants = bytesOf(parameters),
         .groups = {(rayCount + shared::kTraceRaysGroupSize - 1) / shared::kTraceRaysGroupSize, 1, 1}};
-    PFVOX_TRY([[maybe_unused]] const double, milliseconds, device.run({&dispatch, 1}));
+    PFVOX_TRY(const double, gpuMs, device.run({&dispatch, 1}));
 
     std::vector<shared::HitRecord> found(rays.size());
     PFVOX_CHECK(device.download(hitBuffer, 0, std::as_writable_bytes(std::span(found))));
-    std::vector<GpuHit> hits(rays.size());
-    std::ranges::transform(found, hits.begin(), hitOf);
-    return hits;
+    RayBatch batch{.hits = std::vector<GpuHit>(rays.size()), .gpuMs = gpuMs};
+    std::ranges::transform(found, batch.hits.begin(), hitOf);
+    return batch;
 }
 
 }  // namespace pfvox::gpu
