@@ -82,8 +82,6 @@ vec3 cubeFromWorldVector(InstanceRecord instance, vec3 v) {
                 dot(instance.cubeFromWorld2.xyz, v));
 }
 
-uint farDistance(TreeBlock block, uint index) { return block.words[block.header.farOffset + index]; }
-
 // The region block behind a leaf of the top tree.
 uvec2 regionBlockOf(TreeBlock top, uint node, uint leaves, uint slot) {
     uint region = top.words[top.header.lookupOffset + node] + bitCount(leaves & ((1u << slot) - 1u));
@@ -93,100 +91,133 @@ uvec2 regionBlockOf(TreeBlock top, uint node, uint leaves, uint slot) {
 
 // --- One model ---
 
-// Nearest leaf of one model that begins before hit.t. Writes all of `hit` but `instance`, and only when there is one.
-bool traceOctree(ModelRecord model, vec3 origin, vec3 direction, inout Hit hit, inout TraceStatistics statistics) {
+uint bitsOf(bvec3 v) { return uint(v.x) | uint(v.y) << 1 | uint(v.z) << 2; }
+uint bitsOf(uvec3 v) { return (v.x & 1u) | (v.y & 1u) << 1 | (v.z & 1u) << 2; }
+
+// A ray in the mirrored cube, where all its components are negative: plane p of an axis is met at t = p * c - b. t
+// counts from the entry into the model's tight box, where the floats are fine.
+struct CubeRay {
+    vec3 c;
+    vec3 b;
+    bvec3 mirrored;
+    float tMin;
+    float tLength;  // to the end of the box or of the ray
+    float tEnter;   // what t = 0 is for the caller, times `speed`
+    float speed;    // longest component of the caller's direction
+};
+
+// False when the ray does not meet the box before tMax.
+bool enterModel(ModelRecord model, vec3 origin, vec3 direction, float tMax, out CubeRay ray) {
     // The longest component becomes 1: steps then have the precision of the cube whatever the ray's length unit is.
-    float speed = maxOf(abs(direction));
-    vec3 d = boundedDirection(direction / speed);
+    ray.speed = maxOf(abs(direction));
+    vec3 d = boundedDirection(direction / ray.speed);
     vec3 inverse = 1.0 / d;
     vec2 span = boxSpan(model.boxMin, model.boxMax, origin, inverse);
-    float tEnter = max(span.x, 0.0);
-    float tLength = min(span.y, hit.t * speed) - tEnter;
-    if (!(tLength >= 0.0)) return false;
+    ray.tEnter = max(span.x, 0.0);
+    ray.tLength = min(span.y, tMax * ray.speed) - ray.tEnter;
+    ray.c = -abs(inverse);
+    ray.b = ray.c * (origin + ray.tEnter * d);
+    ray.mirrored = greaterThan(d, vec3(0.0));
+    ray.b = mix(ray.b, 3.0 * ray.c - ray.b, ray.mirrored);
+    ray.tMin = max(maxOf(2.0 * ray.c - ray.b), 0.0);
+    return ray.tLength >= 0.0;
+}
 
-    // From here t counts from the entry into the tight box, where the floats are fine.
-    vec3 start = origin + tEnter * d;
-    vec3 c = -abs(inverse);  // plane p of a mirrored axis is met at t = p * c - b
-    vec3 b = c * start;
-    bvec3 mirrored = greaterThan(d, vec3(0.0));
-    b = mix(b, 3.0 * c - b, mirrored);
-    uint mirrorBits = uint(mirrored.x) | uint(mirrored.y) << 1 | uint(mirrored.z) << 2;
-    float tMin = max(maxOf(2.0 * c - b), 0.0);
+// The half of a node that holds the ray at tMin, axis by axis: moves `corner` from the node's to that child's and returns
+// the child's number. tCentre: when the planes through the node's centre are met.
+uint enterChild(vec3 tCentre, float tMin, float halfSize, inout vec3 corner) {
+    bvec3 upper = greaterThan(tCentre, vec3(tMin));
+    corner = mix(corner, corner + halfSize, upper);
+    return bitsOf(upper);
+}
+
+// The axis whose far plane comes first. At an edge one axis goes before the other, so that no step is diagonal and
+// nothing slips through between two solid cells that touch there.
+bvec3 nextAxis(vec3 tExit, float tCell) {
+    bvec3 axis = lessThanEqual(tExit, vec3(tCell));
+    axis.y = axis.y && !axis.x;
+    axis.z = !(axis.x || axis.y);
+    return axis;
+}
+
+// Index of an inner child. The far table is hardly ever read.
+uint childNode(TreeBlock block, uint node, uint descriptor, uint slot) {
+    uint inner = descriptor >> 8u & ~descriptor & 0xffu;
+    uint distance = descriptor >> 17u;
+    if ((descriptor & 0x10000u) != 0u) distance = block.words[block.header.farOffset + distance];
+    return node + distance + bitCount(inner & ((1u << slot) - 1u));
+}
+
+// Nearest leaf of one model that begins before hit.t. Writes all of `hit` but `instance`, and only when there is one.
+bool traceOctree(ModelRecord model, vec3 origin, vec3 direction, inout Hit hit, inout TraceStatistics statistics) {
+    CubeRay ray;
+    if (!enterModel(model, origin, direction, hit.t, ray)) return false;
+    uint mirrorBits = bitsOf(ray.mirrored);
+    float tMin = ray.tMin;
 
     uint stack[kOctreeStackSize];
     TreeBlock root = TreeBlock(model.rootBlock);
     TreeBlock block = root;
     uint node = 0u;
-    uint descriptor = 0u;
+    uint descriptor = 0u;  // 0 = not loaded: no node has it
     uint scale = kCubeScale - 1u;
     float size = 0.5;
-    bvec3 upper = greaterThan(1.5 * c - b, vec3(tMin));
-    vec3 corner = mix(vec3(1.0), vec3(1.5), upper);
-    uint child = uint(upper.x) | uint(upper.y) << 1 | uint(upper.z) << 2;
+    vec3 corner = vec3(1.0);
+    uint child = enterChild(1.5 * ray.c - ray.b, tMin, size, corner);
 
     uint lastStep = statistics.steps + kMaxTraceSteps;
     while (statistics.steps != lastStep) {
         ++statistics.steps;
         if (descriptor == 0u) descriptor = block.words[node];
-        vec3 tExit = corner * c - b;
+        vec3 tExit = corner * ray.c - ray.b;
         float tCell = minOf(tExit);
         uint slot = child ^ mirrorBits;
 
         if ((descriptor >> (8u + slot) & 1u) != 0u) {
             stack[scale] = node;
             if ((descriptor >> slot & 1u) == 0u) {
-                uint inner = descriptor >> 8u & ~descriptor & 0xffu;
-                uint distance = descriptor >> 17u;
-                if ((descriptor & 0x10000u) != 0u) distance = farDistance(block, distance);
-                node += distance + bitCount(inner & ((1u << slot) - 1u));
+                node = childNode(block, node, descriptor, slot);
             } else if (scale > model.regionScale) {
                 block = TreeBlock(regionBlockOf(block, node, descriptor & 0xffu, slot));
                 node = 0u;
             } else {
-                hit.t = (tEnter + tMin) / speed;
+                hit.t = (ray.tEnter + tMin) / ray.speed;
                 hit.block = uvec2(block);
                 hit.node = node;
                 hit.slot = slot;
                 hit.scale = scale;
-                hit.corner = mix(corner, 3.0 - size - corner, mirrored);
+                hit.corner = mix(corner, 3.0 - size - corner, ray.mirrored);
                 return true;
             }
-            // Push: the child's own child that holds the ray at tMin.
-            float halfSize = 0.5 * size;
-            upper = greaterThan(halfSize * c + tExit, vec3(tMin));
-            corner = mix(corner, corner + halfSize, upper);
-            child = uint(upper.x) | uint(upper.y) << 1 | uint(upper.z) << 2;
-            size = halfSize;
+            // Push
+            size *= 0.5;
+            child = enterChild(size * ray.c + tExit, tMin, size, corner);
             --scale;
             descriptor = 0u;
             continue;
         }
 
-        // Advance to the next cell of this node. At an edge one axis goes first, so that no step is diagonal and nothing
-        // slips through between two solid cells that touch there.
-        bvec3 leaves = lessThanEqual(tExit, vec3(tCell));
-        leaves.y = leaves.y && !leaves.x;
-        leaves.z = !(leaves.x || leaves.y);
-        uint stepBits = uint(leaves.x) | uint(leaves.y) << 1 | uint(leaves.z) << 2;
+        // Advance
+        bvec3 axis = nextAxis(tExit, tCell);
+        uint axisBit = bitsOf(axis);
         vec3 before = corner;
-        corner = mix(corner, corner - size, leaves);
-        tMin = max(tMin, tCell);
-        if (tMin > tLength) return false;
-        child ^= stepBits;
+        corner = mix(corner, corner - size, axis);
+        tMin = max(tMin, tCell);  // never back, however coarse the time of a plane almost along the ray is
+        if (tMin > ray.tLength) return false;
+        child ^= axisBit;
+        if ((child & axisBit) == 0u) continue;
 
-        if ((child & stepBits) != 0u) {
-            // Pop: an axis went from its lower to an upper half, so the ray left the node.
-            uvec3 changed = floatBitsToUint(before) ^ floatBitsToUint(corner);
-            scale = uint(findMSB(changed.x | changed.y | changed.z));
-            if (scale >= kCubeScale) return false;
-            size = uintBitsToFloat((scale + (127u - kCubeScale)) << 23);
-            node = stack[scale];
-            if (scale > model.regionScale) block = root;
-            uvec3 path = floatBitsToUint(corner) >> scale;
-            corner = uintBitsToFloat(path << scale);
-            child = (path.x & 1u) | (path.y & 1u) << 1 | (path.z & 1u) << 2;
-            descriptor = 0u;
-        }
+        // Pop: from a lower to an upper half is out of the node. The highest bit of the path that changed tells how far.
+        uvec3 changed = floatBitsToUint(before) ^ floatBitsToUint(corner);
+        scale = uint(findMSB(changed.x | changed.y | changed.z));
+        if (scale >= kCubeScale) return false;
+        size = uintBitsToFloat((scale + (127u - kCubeScale)) << 23);
+        node = stack[scale];
+        if (scale > model.regionScale) block = root;
+        uvec3 path = floatBitsToUint(corner) >> scale;
+        corner = uintBitsToFloat(path << scale);
+        child = bitsOf(path);
+        descriptor = 0u;
     }
     statistics.capped = 1u;
     return false;
@@ -290,16 +321,11 @@ uint hoistedMaterial(TreeBlock region, ModelRecord model, Hit hit) {
     uvec3 path = floatBitsToUint(hit.corner);
     uint node = 0u;
     for (uint scale = min(model.regionScale, kCubeScale - 1u);; --scale) {
-        uvec3 bits = path >> scale & 1u;
-        uint slot = bits.x | bits.y << 1 | bits.z << 2;
+        uint slot = bitsOf(path >> scale);
         uint lookup = region.words[region.header.lookupOffset + node];
         if ((lookup >> slot & 1u) != 0u) return materialOfSlot(region, lookup, slot);
         if (scale <= hit.scale) return 0u;  // not in a valid tree
-        uint descriptor = region.words[node];
-        uint inner = descriptor >> 8u & ~descriptor & 0xffu;
-        uint distance = descriptor >> 17u;
-        if ((descriptor & 0x10000u) != 0u) distance = farDistance(region, distance);
-        node += distance + bitCount(inner & ((1u << slot) - 1u));
+        node = childNode(region, node, region.words[node], slot);
     }
 }
 
