@@ -1,7 +1,7 @@
 // Files: the only way in which libformat touches the disk.
 //
-// Sources are read whole into memory rather than mapped: a file that another program shortens while we read it gives an
-// error here, but a SIGBUS under a mapping (docs/decisions/002-read-not-map.md).
+// Sources are read whole into memory rather than mapped: a file that another program shortens while we read
+// it gives an error here, but a SIGBUS under a mapping (docs/decisions/002-read-not-map.md).
 #pragma once
 
 #include <cstddef>
@@ -16,7 +16,8 @@ namespace pfvox::io {
 class FileBytes {
   public:
     FileBytes() = default;
-    explicit FileBytes(std::size_t size) : data_(std::make_unique_for_overwrite<std::byte[]>(size)), size_(size) {}
+    explicit FileBytes(std::size_t size)
+        : data_(std::make_unique_for_overwrite<std::byte[]>(size)), size_(size) {}
     std::span<std::byte> bytes() { return {data_.get(), size_}; }
     std::span<const std::byte> bytes() const { return {data_.get(), size_}; }
     void shrink(std::size_t size) { size_ = size; }
@@ -29,8 +30,8 @@ class FileBytes {
 /// Reads a whole regular file. Errors, each with `file`: FileNotFound, FileNotReadable, LimitExceeded.
 Result<FileBytes> readFile(const std::filesystem::path& file, std::uint64_t maxBytes);
 
-/// Writes to a temporary name in the same folder, syncs and renames: `file` holds either all of `bytes` or what it held
-/// before. Creates missing parent folders. Errors: FileNotWritable.
+/// Writes to a temporary name in the same folder, syncs and renames: `file` holds either all of `bytes` or
+/// what it held before. Creates missing parent folders. Errors: FileNotWritable.
 Result<void> writeFileAtomically(const std::filesystem::path& file, std::span<const std::byte> bytes);
 
 }  // namespace pfvox::io
