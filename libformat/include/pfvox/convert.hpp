@@ -12,7 +12,6 @@ namespace pfvox {
 
 struct ConvertSettings {
     ImportSettings import;
-    BuildSettings build;
     int zstdLevel = 3;
 };
 

@@ -60,11 +60,18 @@ struct NodeTree {
 struct OctreeRegion {
     glm::ivec3 originVoxels{0};  ///< lower corner in model voxels
     NodeTree tree;
-    std::vector<std::uint32_t> lookup;          ///< one word for each node
-    std::vector<std::uint16_t> values;          ///< palette indices
-    std::vector<MaterialIndex> palette;         ///< palette index -> material of the asset, ascending
+    std::vector<std::uint32_t> lookup;   ///< one word for each node
+    std::vector<std::uint8_t> values;    ///< palette indices of valueBytes() each, little endian
+    std::vector<MaterialIndex> palette;  ///< palette index -> material of the asset, ascending
     std::uint64_t voxelCount = 0;
-    VoxelBox bounds;                            ///< tight, in model voxels
+    VoxelBox bounds;                     ///< tight, in model voxels
+
+    std::size_t valueBytes() const { return palette.size() <= 256 ? 1 : 2; }
+    std::size_t valueCount() const { return values.size() / valueBytes(); }
+    std::uint32_t value(std::size_t index) const {
+        return valueBytes() == 1 ? values[index]
+                                 : static_cast<std::uint32_t>(values[2 * index] | (values[2 * index + 1] << 8));
+    }
 };
 
 /// One model: a top tree whose leaves are regions, in node order then slot order. A model of at most 256^3 has an empty
@@ -74,9 +81,13 @@ struct OctreeModel {
     std::uint32_t depth = 0;      ///< levels in all; the octree cube has edge 2^depth
     glm::ivec3 originVoxels{0};   ///< lower corner of the octree cube in model voxels
     NodeTree topTree;             ///< depth = max(0, OctreeModel::depth - 8)
+    std::vector<std::uint32_t> topFirstRegion;  ///< for each top node, the region of its first leaf slot
     std::vector<OctreeRegion> regions;
     std::uint64_t voxelCount = 0;
     VoxelBox bounds;
+
+    /// Makes topFirstRegion from topTree.
+    void indexRegions();
 
     /// The material at a voxel by descending from the root: the oracle of all other ways to read an octree.
     std::optional<MaterialIndex> at(glm::ivec3 voxel) const;
@@ -87,16 +98,11 @@ struct OctreeAsset : AssetInfo {
     std::vector<OctreeModel> models;
 };
 
-struct BuildSettings {
-    /// Worker threads are those of the calling TBB arena. The result does not depend on their number.
-    /// Reserved for options of the builder.
-};
-
 /// Builds the octrees of every model, exactly minimised: eight full children of one material become one leaf,
 /// recursively; no voxel changes its material. Materials, instances and the rest are taken over.
-/// Errors: LimitExceeded (depth, regions, materials).
-Result<OctreeAsset> buildOctrees(const VoxelAsset& asset, const BuildSettings& settings, const Limits& limits,
-                                 Diagnostics& diagnostics);
+/// Regions are built in parallel in the calling TBB arena; the result does not depend on the number of threads.
+/// Errors: LimitExceeded (depth, regions, materials), BadReference (a voxel's material does not exist).
+Result<OctreeAsset> buildOctrees(const VoxelAsset& asset, const Limits& limits);
 
 /// Every voxel of the octree back in a sparse grid; leaves larger than a voxel become tiles.
 VoxelModel toVoxelModel(const OctreeModel& model);
