@@ -44,7 +44,8 @@ VoxelRegion::Cell VoxelRegion::cell(std::uint32_t cellMorton) const {
     if (table_.empty()) return {};
     const std::uint32_t entry = table_[cellMorton];
     if (entry == kEmpty) return {};
-    if ((entry & kUniformFlag) != 0) return {.brick = nullptr, .material = static_cast<MaterialIndex>(entry & 0xffffu)};
+    if ((entry & kUniformFlag) != 0)
+        return {.brick = nullptr, .material = static_cast<MaterialIndex>(entry & 0xffffu)};
     return {.brick = &brick(entry), .material = std::nullopt};
 }
 
@@ -87,7 +88,8 @@ void VoxelRegion::fill(MaterialIndex material) {
 }
 
 std::uint64_t VoxelRegion::memoryBytes() const {
-    return sizeof(*this) + table_.capacity() * sizeof(std::uint32_t) + chunks_.size() * kChunkBricks * sizeof(Brick);
+    return sizeof(*this) + table_.capacity() * sizeof(std::uint32_t) +
+           chunks_.size() * kChunkBricks * sizeof(Brick);
 }
 
 // --- VoxelModel ---

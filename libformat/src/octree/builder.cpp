@@ -3,9 +3,9 @@
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <bit>
-#include <fmt/format.h>
 #include <pfvox/octree.hpp>
 #include <span>
 
@@ -41,21 +41,22 @@ std::vector<const VoxelRegion*> sortedRegions(const VoxelModel& model, glm::ivec
         regions.push_back(region.get());
         minCoord = glm::min(minCoord, region->coord());
     }
-    std::ranges::sort(regions, {}, [&](const VoxelRegion* r) { return morton63(glm::uvec3{r->coord() - minCoord}); });
+    std::ranges::sort(regions, {},
+                      [&](const VoxelRegion* r) { return morton63(glm::uvec3{r->coord() - minCoord}); });
     return regions;
 }
 
 /// Builds the tree over regions[first, last), which all lie in the cube of this level; leaves carry no value.
-octree::Slot buildTop(octree::NodeWriter& writer, std::span<const std::uint64_t> codes, std::uint32_t levelsBelow) {
+octree::Slot buildTop(octree::NodeWriter& writer, std::span<const std::uint64_t> codes,
+                      std::uint32_t levelsBelow) {
     if (codes.empty()) return {};
     // Leaves are told apart by their order alone; never uniform, so that two regions are not merged.
     if (levelsBelow == 0) return {.kind = octree::Slot::Kind::Leaf};
     std::array<octree::Slot, 8> children;
     for (std::uint64_t k = 8; k-- > 0;) {
         const auto begins = [&](std::uint64_t slot) {
-            return std::ranges::partition_point(codes, [&](std::uint64_t code) {
-                return ((code >> (3 * (levelsBelow - 1))) & 7u) < slot;
-            });
+            return std::ranges::partition_point(
+                codes, [&](std::uint64_t code) { return ((code >> (3 * (levelsBelow - 1))) & 7u) < slot; });
         };
         children[k] = buildTop(writer, {begins(k), begins(k + 1)}, levelsBelow - 1);
     }
@@ -66,7 +67,8 @@ Result<NodeTree> buildTopTree(const std::vector<const VoxelRegion*>& regions, gl
                               std::uint32_t depth) {
     std::vector<std::uint64_t> codes;
     codes.reserve(regions.size());
-    for (const VoxelRegion* region : regions) codes.push_back(morton63(glm::uvec3{region->coord() - minCoord}));
+    for (const VoxelRegion* region : regions)
+        codes.push_back(morton63(glm::uvec3{region->coord() - minCoord}));
     octree::NodeWriter writer;
     writer.finish(buildTop(writer, codes, depth));
     NodeTree tree;
@@ -76,15 +78,17 @@ Result<NodeTree> buildTopTree(const std::vector<const VoxelRegion*>& regions, gl
 }
 
 /// Everything of a model but the content of its regions, for which it adds tasks.
-Result<OctreeModel> planModel(const VoxelModel& source, const Limits& limits, std::vector<RegionTask>& tasks) {
+Result<OctreeModel> planModel(const VoxelModel& source, const Limits& limits,
+                              std::vector<RegionTask>& tasks) {
     OctreeModel model;
     model.name = source.name;
     glm::ivec3 minCoord;
     const std::vector<const VoxelRegion*> regions = sortedRegions(source, minCoord);
     if (regions.size() > limits.maxRegions) {
-        return fail(ErrorCode::LimitExceeded, fmt::format("model '{}' has {} regions of 256^3 voxels, more than "
-                                                          "maxRegions = {}",
-                                                          source.name, regions.size(), limits.maxRegions));
+        return fail(ErrorCode::LimitExceeded,
+                    fmt::format("model '{}' has {} regions of 256^3 voxels, more than "
+                                "maxRegions = {}",
+                                source.name, regions.size(), limits.maxRegions));
     }
     model.regions.resize(regions.size());
     using Extent = octree::RegionBuilder::Extent;
@@ -95,15 +99,17 @@ Result<OctreeModel> planModel(const VoxelModel& source, const Limits& limits, st
     std::uint64_t edgeRegions = 0;
     for (const VoxelRegion* region : regions) {
         const glm::i64vec3 offset = glm::i64vec3{region->coord()} - glm::i64vec3{minCoord};
-        edgeRegions = std::max({edgeRegions, static_cast<std::uint64_t>(offset.x) + 1,
-                                static_cast<std::uint64_t>(offset.y) + 1, static_cast<std::uint64_t>(offset.z) + 1});
+        edgeRegions =
+            std::max({edgeRegions, static_cast<std::uint64_t>(offset.x) + 1,
+                      static_cast<std::uint64_t>(offset.y) + 1, static_cast<std::uint64_t>(offset.z) + 1});
     }
     const auto topDepth = static_cast<std::uint32_t>(std::bit_width(edgeRegions - 1));
     model.depth = topDepth + kRegionEdgeLog2;
     if (model.depth > limits.maxModelDepth) {
-        return fail(ErrorCode::LimitExceeded,
-                    fmt::format("model '{}' is {} voxels wide: {} octree levels, more than maxModelDepth = {}",
-                                source.name, edgeRegions * kRegionEdge, model.depth, limits.maxModelDepth));
+        return fail(
+            ErrorCode::LimitExceeded,
+            fmt::format("model '{}' is {} voxels wide: {} octree levels, more than maxModelDepth = {}",
+                        source.name, edgeRegions * kRegionEdge, model.depth, limits.maxModelDepth));
     }
     model.originVoxels = minCoord * kRegionEdge;
     PFVOX_TRY(NodeTree, topTree, buildTopTree(regions, minCoord, topDepth));

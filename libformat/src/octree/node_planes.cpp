@@ -1,9 +1,9 @@
 #include "octree/node_planes.hpp"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <fmt/format.h>
 
 namespace pfvox::octree {
 
@@ -42,7 +42,8 @@ Result<void> checkMasks(const NodePlanes& planes, bool withHoisted) {
     return {};
 }
 
-/// Gives every node the distance to its first child (in tree.nodes, for now) by walking the sibling blocks depth first.
+/// Gives every node the distance to its first child (in tree.nodes, for now) by walking the sibling blocks
+/// depth first.
 Result<void> walkBlocks(const NodePlanes& planes, NodeTree& tree) {
     struct Block {
         std::uint32_t next;
@@ -67,7 +68,8 @@ Result<void> walkBlocks(const NodePlanes& planes, NodeTree& tree) {
         if (levels >= tree.depth) return badNode(index, "has inner children at the last level");
         const std::uint32_t first = allocated;
         allocated += static_cast<std::uint32_t>(std::popcount(inner));
-        // checkMasks: the sum of all inner children is the number of nodes, so allocated never runs past the end.
+        // checkMasks: the sum of all inner children is the number of nodes, so allocated never runs past the
+        // end.
         tree.nodes[index] = first - index;
         stack[levels++] = {first, allocated};
     }
@@ -118,9 +120,10 @@ Result<void> writeDescriptors(const NodePlanes& planes, NodeTree& tree) {
         if (distance <= node::kMaxNearPointer) {
             tree.nodes[i] = masks | (distance << node::kPointerShift);
         } else {
-            if (tree.farTable.size() > node::kMaxNearPointer) return badNode(i, "more than 32768 far pointers");
-            tree.nodes[i] =
-                masks | node::kFarBit | (static_cast<std::uint32_t>(tree.farTable.size()) << node::kPointerShift);
+            if (tree.farTable.size() > node::kMaxNearPointer)
+                return badNode(i, "more than 32768 far pointers");
+            tree.nodes[i] = masks | node::kFarBit |
+                            (static_cast<std::uint32_t>(tree.farTable.size()) << node::kPointerShift);
             tree.farTable.push_back(distance);
         }
     }

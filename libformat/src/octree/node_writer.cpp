@@ -1,8 +1,8 @@
 #include "octree/node_writer.hpp"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <bit>
-#include <fmt/format.h>
 #include <pfvox/assert.hpp>
 
 namespace pfvox::octree {
@@ -111,14 +111,15 @@ Result<void> NodeWriter::writeTree(NodeTree& tree) const {
         if (r.distance <= node::kMaxNearPointer) {
             descriptor |= r.distance << node::kPointerShift;
         } else {
-            descriptor |= node::kFarBit | (static_cast<std::uint32_t>(tree.farTable.size()) << node::kPointerShift);
+            descriptor |=
+                node::kFarBit | (static_cast<std::uint32_t>(tree.farTable.size()) << node::kPointerShift);
             tree.farTable.push_back(r.distance);
         }
         *out++ = descriptor;
     }
     if (tree.farTable.size() > kMaxFarEntries) {
-        return fail(ErrorCode::LimitExceeded,
-                    fmt::format("{} far pointers in one tree, more than {}", tree.farTable.size(), kMaxFarEntries));
+        return fail(ErrorCode::LimitExceeded, fmt::format("{} far pointers in one tree, more than {}",
+                                                          tree.farTable.size(), kMaxFarEntries));
     }
     return {};
 }
@@ -136,8 +137,9 @@ Result<void> NodeWriter::writeAttributes(std::size_t materialCount, OctreeRegion
     std::vector<std::uint16_t> paletteIndex(materialCount, 0);
     for (const MaterialIndex m : values_) {
         if (m >= materialCount) {
-            return fail(ErrorCode::BadReference, fmt::format("a voxel has material {}, but there are only {} materials",
-                                                             m, materialCount));
+            return fail(
+                ErrorCode::BadReference,
+                fmt::format("a voxel has material {}, but there are only {} materials", m, materialCount));
         }
         paletteIndex[m] = 1;
     }
@@ -150,7 +152,8 @@ Result<void> NodeWriter::writeAttributes(std::size_t materialCount, OctreeRegion
     region.values.resize(values_.size() * region.valueBytes());
     std::uint8_t* bytes = region.values.data();
     if (region.valueBytes() == 1) {
-        for (std::size_t i = values_.size(); i-- > 0;) *bytes++ = static_cast<std::uint8_t>(paletteIndex[values_[i]]);
+        for (std::size_t i = values_.size(); i-- > 0;)
+            *bytes++ = static_cast<std::uint8_t>(paletteIndex[values_[i]]);
     } else {
         for (std::size_t i = values_.size(); i-- > 0;) {
             *bytes++ = static_cast<std::uint8_t>(paletteIndex[values_[i]] & 0xff);

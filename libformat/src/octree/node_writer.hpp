@@ -1,8 +1,9 @@
 // NodeWriter: puts a tree of child descriptors together from its leaves up.
 //
-// Final order is depth-first by sibling blocks, so a node's children lie behind it. Writing that order backwards means
-// that everything a descriptor points at is already written when the descriptor is: no fix-ups, no second traversal.
-// finish() turns the sequence round and makes pointers, far table, lookup words and the palette in one linear pass.
+// Final order is depth-first by sibling blocks, so a node's children lie behind it. Writing that order
+// backwards means that everything a descriptor points at is already written when the descriptor is: no
+// fix-ups, no second traversal. finish() turns the sequence round and makes pointers, far table, lookup words
+// and the palette in one linear pass.
 #pragma once
 
 #include <array>
@@ -32,15 +33,17 @@ struct Slot {
 
 class NodeWriter {
   public:
-    /// Makes the parent of eight children: a larger leaf when all are leaves of one material, else an inner node whose
-    /// block of inner children is written now. Children's subtrees must have been written from slot 7 to slot 0.
+    /// Makes the parent of eight children: a larger leaf when all are leaves of one material, else an inner
+    /// node whose block of inner children is written now. Children's subtrees must have been written from
+    /// slot 7 to slot 0.
     Slot combine(const std::array<Slot, 8>& children);
 
-    /// Ends the tree with its root, which must not be Empty. A root that is one leaf is written as a node of eight.
+    /// Ends the tree with its root, which must not be Empty. A root that is one leaf is written as a node of
+    /// eight.
     void finish(const Slot& root);
 
-    /// While the root has one inner child only, that child becomes the root; a root with one leaf child becomes that
-    /// leaf's eight octants. Call after finish(). Returns the slots that were descended through.
+    /// While the root has one inner child only, that child becomes the root; a root with one leaf child
+    /// becomes that leaf's eight octants. Call after finish(). Returns the slots that were descended through.
     std::vector<std::uint32_t> stripRoot(std::uint32_t maxLevels);
 
     /// Nodes and far table in final order. Errors: LimitExceeded if the far table would exceed 2^15 entries.

@@ -6,7 +6,8 @@ namespace pfvox {
 
 namespace {
 
-/// Child slot of the point in the cube whose children have edge 2^childLog2, both relative to the cube's corner.
+/// Child slot of the point in the cube whose children have edge 2^childLog2, both relative to the cube's
+/// corner.
 std::uint32_t slotOf(glm::i64vec3 local, std::uint32_t childLog2) {
     const auto bit = [&](std::int64_t c) { return static_cast<std::uint32_t>((c >> childLog2) & 1); };
     return bit(local.x) | (bit(local.y) << 1) | (bit(local.z) << 2);
@@ -74,7 +75,8 @@ void forEachLeaf(const OctreeRegion& region, const Visit& visit) {
                 PFVOX_ASSERT(value != kNone);
                 visit(corner, f.level, region.palette[region.value(value)]);
             } else {
-                const std::uint32_t child = region.tree.firstChild(f.index) + countBelow(node::innerMask(d), slot);
+                const std::uint32_t child =
+                    region.tree.firstChild(f.index) + countBelow(node::innerMask(d), slot);
                 stack.push_back({child, f.level - 1, corner, value});
             }
         }
@@ -97,7 +99,8 @@ std::optional<MaterialIndex> OctreeModel::at(glm::ivec3 voxel) const {
     if (regions.empty()) return std::nullopt;
     const glm::i64vec3 local = glm::i64vec3{voxel} - glm::i64vec3{originVoxels};
     const std::int64_t edge = std::int64_t{1} << depth;
-    if (glm::any(glm::lessThan(local, glm::i64vec3{0})) || glm::any(glm::greaterThanEqual(local, glm::i64vec3{edge}))) {
+    if (glm::any(glm::lessThan(local, glm::i64vec3{0})) ||
+        glm::any(glm::greaterThanEqual(local, glm::i64vec3{edge}))) {
         return std::nullopt;
     }
     const auto region = regionIndexAt(*this, local);

@@ -52,7 +52,8 @@ Slot buildOctet(std::uint8_t mask, const MaterialIndex* materials) {
     return slot;
 }
 
-/// Lowest and highest set coordinate of 4^3 Morton-ordered bits along one axis (0 = x, 1 = y, 2 = z); -1 when empty.
+/// Lowest and highest set coordinate of 4^3 Morton-ordered bits along one axis (0 = x, 1 = y, 2 = z); -1 when
+/// empty.
 struct Span4 {
     int first = -1;
     int last = -1;
@@ -89,7 +90,8 @@ VoxelBox boundsOf(const Brick& brick) {
 }
 
 bool contains(const VoxelBox& outer, const VoxelBox& inner) {
-    return glm::all(glm::lessThanEqual(outer.min, inner.min)) && glm::all(glm::greaterThanEqual(outer.max, inner.max));
+    return glm::all(glm::lessThanEqual(outer.min, inner.min)) &&
+           glm::all(glm::greaterThanEqual(outer.max, inner.max));
 }
 
 /// Number of voxels and their tight box, in model voxels.
@@ -111,7 +113,8 @@ void measure(const VoxelRegion& source, OctreeRegion& region) {
             continue;
         }
         std::uint64_t count = 0;
-        for (const std::uint64_t word : cell.brick->occupancy) count += static_cast<std::uint64_t>(std::popcount(word));
+        for (const std::uint64_t word : cell.brick->occupancy)
+            count += static_cast<std::uint64_t>(std::popcount(word));
         region.voxelCount += count;
         if (count == 0 || contains(region.bounds, whole)) continue;
         const VoxelBox local = boundsOf(*cell.brick);
@@ -127,7 +130,8 @@ bool isEmpty(const VoxelRegion& region) {
         const VoxelRegion::Cell cell = region.cell(c);
         if (cell.material) return false;
         if (cell.brick == nullptr) continue;
-        if (std::ranges::any_of(cell.brick->occupancy, [](std::uint64_t word) { return word != 0; })) return false;
+        if (std::ranges::any_of(cell.brick->occupancy, [](std::uint64_t word) { return word != 0; }))
+            return false;
     }
     return true;
 }
@@ -162,7 +166,8 @@ Slot RegionBuilder::buildCells(const VoxelRegion& source, std::uint32_t firstCel
     return writer_.combine(children);
 }
 
-Result<OctreeRegion> RegionBuilder::build(const VoxelRegion& source, Extent extent, std::size_t materialCount) {
+Result<OctreeRegion> RegionBuilder::build(const VoxelRegion& source, Extent extent,
+                                          std::size_t materialCount) {
     writer_.clear();
     writer_.finish(source.uniform() ? Slot::leaf(*source.uniform()) : buildCells(source, 0, 0));
 

@@ -15,8 +15,8 @@ bool isEmpty(const VoxelRegion& region);
 /// Reusable by one thread for many regions; keeps its buffers.
 class RegionBuilder {
   public:
-    /// How far the tree may shrink: a region below a top tree keeps its 8 levels, the only region of a model is cut to
-    /// the smallest aligned cube around its voxels.
+    /// How far the tree may shrink: a region below a top tree keeps its 8 levels, the only region of a model
+    /// is cut to the smallest aligned cube around its voxels.
     enum class Extent { Full, Shrink };
 
     /// Precondition: !isEmpty(source). Errors: BadReference, LimitExceeded.
