@@ -28,7 +28,7 @@ Existing inspectOutput(const fs::path& output, const ContentKey& wanted, const L
     if (!fs::exists(output, error)) return {.reason = "there was no output"};
     const auto contents = io::readFile(output, limits.maxFileBytes);
     if (!contents) return {.present = true, .reason = "the existing output cannot be read"};
-    const auto header = readPfVoxHeader(contents->bytes(), limits);
+    const auto header = readPfVoxHeader(contents->bytes());
     if (!header)
         return {.present = true, .reason = "the existing output is not a PF_VOX file of this version"};
     if (header->fileBytes != contents->bytes().size()) {

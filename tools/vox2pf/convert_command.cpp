@@ -1,4 +1,3 @@
-#include <CLI/Validators.hpp>
 #include <memory>
 #include <pfvox/import.hpp>
 

@@ -20,7 +20,7 @@ HelpText helpText() {
 Result<FileInfo> readInfo(const std::filesystem::path& file, const Limits& limits,
                           DiagnosticList& diagnostics) {
     PFVOX_TRY(const io::FileBytes, contents, io::readFile(file, limits.maxFileBytes));
-    PFVOX_TRY(PfVoxHeader, header, readPfVoxHeader(contents.bytes(), limits));
+    PFVOX_TRY(PfVoxHeader, header, readPfVoxHeader(contents.bytes()));
     PFVOX_TRY(OctreeAsset, asset, decodePfVox(contents.bytes(), limits, diagnostics));
     return makeFileInfo(file, std::move(header), std::move(asset));
 }

@@ -71,7 +71,7 @@ Json materialJson(const Material& material, std::uint64_t voxels) {
 Json sectionJson(const PfVoxSection& section) {
     Json json;
     json["name"] = section.fourcc;
-    json["regionId"] = section.regionId;
+    json["regionId"] = section.regionId == kWholeFile ? Json(nullptr) : Json(section.regionId);
     json["codec"] = section.codec;
     json["offsetBytes"] = section.offsetBytes;
     json["storedBytes"] = section.storedBytes;
@@ -89,7 +89,10 @@ Json arrayJson(const Range& range, Convert convert) {
 }  // namespace
 
 FileInfo makeFileInfo(std::filesystem::path file, PfVoxHeader header, OctreeAsset asset) {
-    FileInfo info{.file = std::move(file), .header = std::move(header), .asset = std::move(asset)};
+    FileInfo info;
+    info.file = std::move(file);
+    info.header = std::move(header);
+    info.asset = std::move(asset);
     const std::size_t materialCount = info.asset.materials.size();
     info.total.voxelsOfMaterial.resize(materialCount);
     for (const OctreeModel& model : info.asset.models) {

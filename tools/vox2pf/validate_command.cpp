@@ -29,7 +29,7 @@ Json findingsJson(const std::filesystem::path& file, const std::vector<Finding>&
         Json json;
         json["id"] = finding.id;
         json["context"] = finding.context;
-        json["offsetBytes"] = finding.offsetBytes;
+        json["offsetBytes"] = finding.offsetBytes ? Json(*finding.offsetBytes) : Json(nullptr);
         json["message"] = finding.message;
         list.push_back(json);
     }
@@ -47,9 +47,11 @@ std::string findingsText(const std::filesystem::path& file, const std::vector<Fi
         return fmt::format("{}: {}\n", file.string(), reporter.styled(Style::Good, "valid"));
     std::string text;
     for (const Finding& finding : findings) {
-        text +=
-            fmt::format("{}: {}{}@0x{:x}: {} [{}]\n", file.string(), finding.context,
-                        finding.context.empty() ? "" : " ", finding.offsetBytes, finding.message, finding.id);
+        const std::string offset = finding.offsetBytes ? fmt::format("@0x{:x}", *finding.offsetBytes) : "";
+        const bool both = !finding.context.empty() && !offset.empty();
+        const std::string place = finding.context + (both ? " " : "") + offset;
+        text += fmt::format("{}: {}{}{} [{}]\n", file.string(), place, place.empty() ? "" : ": ",
+                            finding.message, finding.id);
     }
     return text + fmt::format("{}: {}\n", file.string(),
                               reporter.styled(Style::Bad, plural(findings.size(), "finding")));
