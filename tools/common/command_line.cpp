@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 
 #include "common/table.hpp"
 #include "common/text.hpp"
@@ -59,7 +60,10 @@ class HelpFormatter final : public CLI::Formatter {
 
     static std::string optionGroups(const CLI::App* app) {
         std::string text;
-        for (const std::string& group : app->get_groups()) {
+        std::vector<std::string> groups = app->get_groups();
+        std::ranges::stable_partition(groups,
+                                      [](const std::string& name) { return name != group::kGeneral; });
+        for (const std::string& group : groups) {
             std::vector<std::pair<std::string, std::string>> rows;
             for (const CLI::Option* option : app->get_options()) {
                 if (option->get_group() != group || !option->nonpositional()) continue;
@@ -113,6 +117,20 @@ std::optional<std::string> complaintAboutUnknownOption(const CLI::App& tool) {
     return std::nullopt;
 }
 
+/// A first word that is nearly a command and names no file, or nothing.
+std::optional<std::string> complaintAboutCommand(const CLI::App& tool,
+                                                 const std::vector<std::string>& arguments) {
+    std::error_code ignored;
+    if (arguments.size() < 2 || std::filesystem::exists(arguments[1], ignored)) return std::nullopt;
+    std::vector<std::string> commands;
+    for (const CLI::App* command : tool.get_subcommands([](const CLI::App*) { return true; })) {
+        commands.push_back(command->get_name());
+    }
+    const auto nearest = nearestWord(arguments[1], commands);
+    if (!nearest) return std::nullopt;
+    return fmt::format("{} is neither a command nor a file; did you mean {}?", arguments[1], *nearest);
+}
+
 }  // namespace
 
 std::unique_ptr<CLI::App> makeTool(const std::string& name, const HelpText& text,
@@ -145,14 +163,13 @@ std::vector<std::string> withDefaultCommand(const CLI::App& tool, const std::str
     return arguments;
 }
 
-std::optional<ExitCode> parseCommandLine(CLI::App& tool, std::vector<std::string> arguments) {
+std::optional<ExitCode> parseCommandLine(CLI::App& tool, const std::vector<std::string>& arguments) {
     if (arguments.empty()) {
         print(stderr, tool.help());
         return ExitCode::Usage;
     }
-    std::ranges::reverse(arguments);  // CLI11 takes them from the back
     try {
-        tool.parse(std::move(arguments));
+        tool.parse({arguments.rbegin(), arguments.rend()});  // CLI11 takes them from the back
     } catch (const CLI::CallForHelp&) {
         print(stdout, chosenCommand(tool).help());
         return ExitCode::Ok;
@@ -160,7 +177,9 @@ std::optional<ExitCode> parseCommandLine(CLI::App& tool, std::vector<std::string
         print(stdout, std::string(version.what()) + "\n");
         return ExitCode::Ok;
     } catch (const CLI::ParseError& error) {
-        return usageError(chosenCommand(tool), complaintAboutUnknownOption(tool).value_or(error.what()));
+        auto complaint = complaintAboutUnknownOption(tool);
+        if (!complaint) complaint = complaintAboutCommand(tool, arguments);
+        return usageError(chosenCommand(tool), complaint.value_or(error.what()));
     }
     return std::nullopt;
 }

@@ -52,7 +52,7 @@ std::vector<std::string> withDefaultCommand(const CLI::App& tool, const std::str
 
 /// Parses. Returns an exit code when the tool has nothing more to do: help or version printed, or wrong usage
 /// reported.
-std::optional<ExitCode> parseCommandLine(CLI::App& tool, std::vector<std::string> arguments);
+std::optional<ExitCode> parseCommandLine(CLI::App& tool, const std::vector<std::string>& arguments);
 
 /// Reports wrong usage that the parser cannot see.
 ExitCode usageError(const CLI::App& command, const std::string& message);

@@ -22,7 +22,7 @@ std::string complaintAbout(const std::vector<InputFile>& inputs, const fs::path&
     if (namesOutputFile(output, extension)) {
         if (!severalAssets) return {};
         return fmt::format("-o {} names one file, but the input is {}: name a folder", output.string(),
-                           inputs.size() == 1 ? "a folder" : "several files");
+                           inputs.front().fromFolder ? "a folder" : "several files");
     }
     std::error_code error;
     const bool looksLikeOtherFile =

@@ -69,6 +69,13 @@ std::size_t editDistance(std::string_view a, std::string_view b) {
     return cost[a.size()][b.size()];
 }
 
+std::string lowerCase(std::string_view ascii) {
+    std::string text(ascii);
+    std::ranges::transform(text, text.begin(),
+                           [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
+    return text;
+}
+
 bool matches(std::string_view pattern, std::string_view path) {
     while (!pattern.empty()) {
         if (pattern.starts_with("**")) {
@@ -98,10 +105,13 @@ bool matches(std::string_view pattern, std::string_view path) {
 }  // namespace
 
 std::optional<std::string> nearestWord(std::string_view word, std::span<const std::string> candidates) {
+    const std::string typed = lowerCase(word);
     std::optional<std::string> nearest;
     std::size_t best = std::max<std::size_t>(2, word.size() / 3) + 1;
     for (const std::string& candidate : candidates) {
-        const std::size_t distance = editDistance(word, candidate);
+        const std::string known = lowerCase(candidate);
+        const bool isBeginning = typed.size() >= 4 && known.starts_with(typed);
+        const std::size_t distance = isBeginning ? 1 : editDistance(typed, known);
         if (distance >= best || distance >= candidate.size()) continue;
         best = distance;
         nearest = candidate;

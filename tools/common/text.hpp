@@ -29,7 +29,8 @@ std::string formatDuration(double seconds);
 std::size_t displayWidth(std::string_view utf8);
 
 /// The candidate that takes the fewest insertions, deletions, replacements and swaps of neighbours to reach,
-/// if it is near enough to be what the user meant.
+/// if it is near enough to be what the user meant. Case does not matter; the beginning of a word counts as
+/// near.
 std::optional<std::string> nearestWord(std::string_view word, std::span<const std::string> candidates);
 
 /// Whether a shell pattern fits a path with '/' separators. `*` and `?` stay within a folder, `**` crosses

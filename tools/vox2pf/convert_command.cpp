@@ -42,7 +42,7 @@ HelpText helpText() {
 }
 
 void addInputOutputOptions(CLI::App& command, ConvertOptions& options) {
-    command.add_option("inputs", options.inputs)->required()->group(group::kInputOutput);
+    command.add_option("input", options.inputs)->required()->group(group::kInputOutput);
     command.add_option("-o,--output", options.output, "file (.pf_vox) for one input, else folder; required")
         ->option_text("PATH")
         ->required()
@@ -78,7 +78,7 @@ void addConversionOptions(CLI::App& command, ConvertOptions& options) {
         ->group(group::kConversion);
     command
         .add_option("--voxel-size", patch.voxelSizeMetres,
-                    "edge of a voxel (default: as in the source, else 0.1)")
+                    "edge of a voxel, 1e-6 to 1e6 (default: as in the source, else 0.1)")
         ->option_text("METRES")
         ->check(CLI::Range(kMinVoxelSizeMetres, kMaxVoxelSizeMetres))
         ->group(group::kConversion);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 
 #include "common/table.hpp"
@@ -125,6 +126,12 @@ std::string summary(std::span<const AssetTask> tasks, std::span<const AssetResul
                       totals.sourceBytes > 0 ? formatBytes(totals.sourceBytes) : "",
                       hasContent ? formatBytes(totals.outputBytes) : "",
                       hasContent ? formatCount(totals.voxels) : ""});
+    }
+    const bool idle =
+        std::ranges::all_of(results, [](const AssetResult& r) { return r.outcome == Outcome::UpToDate; });
+    if (idle) {
+        return fmt::format("nothing to do: all {} are up to date ({})\n", plural(results.size(), "file"),
+                           formatDuration(seconds));
     }
     return table.render() + closingLine(converted, warnings, seconds);
 }

@@ -10,7 +10,7 @@
 namespace pfvox::tools {
 
 void addReadOptions(CLI::App& command, ReadOptions& options) {
-    command.add_option("inputs", options.inputs)->required()->group(group::kInputOutput);
+    command.add_option("input", options.inputs)->required()->group(group::kInputOutput);
     addCommonOptions(command, options.common);
 }
 
