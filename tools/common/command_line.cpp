@@ -169,7 +169,8 @@ std::optional<ExitCode> parseCommandLine(CLI::App& tool, const std::vector<std::
         return ExitCode::Usage;
     }
     try {
-        tool.parse({arguments.rbegin(), arguments.rend()});  // CLI11 takes them from the back
+        tool.parse(
+            std::vector<std::string>(arguments.rbegin(), arguments.rend()));  // CLI11 pops from the back
     } catch (const CLI::CallForHelp&) {
         print(stdout, chosenCommand(tool).help());
         return ExitCode::Ok;
