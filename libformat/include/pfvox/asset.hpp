@@ -39,7 +39,7 @@ struct Material {
     float transparency = 0.0f;       ///< [0, 1]
     float density = 0.0f;            ///< of media, per voxel edge
     float phase = 0.0f;              ///< Henyey-Greenstein g of media, [-1, 1]
-    std::string name;
+    std::string name = {};
 
     bool operator==(const Material&) const = default;
 };
@@ -50,20 +50,20 @@ Material quantised(const Material& material);
 struct Instance {
     std::uint32_t model = 0;                   ///< index into the asset's models
     Affine worldFromModel = identityAffine();  ///< voxel units of the model to metres
-    std::string name;
+    std::string name = {};
     std::int32_t layer = -1;  ///< index into the asset's layers, -1 = none
     bool hidden = false;
 };
 
 struct Layer {
-    std::string name;
+    std::string name = {};
     bool hidden = false;
     bool operator==(const Layer&) const = default;
 };
 
 /// A camera that the source file stored, in metres and degrees.
 struct Camera {
-    std::string name;
+    std::string name = {};
     glm::dvec3 position{0.0};
     glm::dvec3 target{0.0, 0.0, -1.0};
     double fovYDegrees = 45.0;

@@ -18,33 +18,45 @@ tl::unexpected<Error> badNode(std::size_t index, std::string message) {
     return failAt(ErrorCode::BadStructure, index, fmt::format("node {}", index), std::move(message));
 }
 
-/// Checks what can be checked node by node.
-Result<void> checkMasks(const NodePlanes& planes, bool withHoisted) {
+/// Leaf and inner masks of every node, in node order.
+struct NodeMasks {
+    std::vector<std::uint8_t> leaf;
+    std::span<const std::uint8_t> inner;
+    std::size_t size() const { return leaf.size(); }
+};
+
+/// Joins the leaf planes and checks what can be checked node by node.
+Result<NodeMasks> joinMasks(const NodePlanes& planes) {
+    NodeMasks masks{.leaf = std::vector<std::uint8_t>(planes.inner.size()), .inner = planes.inner};
     std::size_t innerChildren = 0;
-    std::size_t innerNodes = 0;
-    for (std::size_t i = 0; i < planes.valid.size(); ++i) {
-        const unsigned valid = planes.valid[i];
+    std::size_t branches = 0;
+    for (std::size_t i = 0; i < masks.size(); ++i) {
         const unsigned inner = planes.inner[i];
-        if (valid == 0) return badNode(i, "no child slot is valid");
-        if ((inner & ~valid) != 0) return badNode(i, "an inner child is not valid");
+        if (inner == 0) {
+            if (i - branches >= planes.tipLeaves.size()) return badNode(i, "the tip plane is too short");
+            masks.leaf[i] = planes.tipLeaves[i - branches];
+            if (masks.leaf[i] == 0) return badNode(i, "has no children");
+            continue;
+        }
+        if (branches >= planes.branchLeaves.size()) return badNode(i, "the branch plane is too short");
+        masks.leaf[i] = planes.branchLeaves[branches++];
+        if ((masks.leaf[i] & inner) != 0) return badNode(i, "a child is leaf and inner node at once");
         innerChildren += static_cast<std::size_t>(std::popcount(inner));
-        innerNodes += inner != 0 ? 1 : 0;
     }
-    if (innerChildren + 1 != planes.valid.size()) {
+    if (branches != planes.branchLeaves.size()) {
+        return fail(ErrorCode::BadStructure, "the announced number of nodes with inner children is wrong");
+    }
+    if (innerChildren + 1 != masks.size()) {
         return fail(ErrorCode::BadStructure,
                     fmt::format("{} nodes announce {} inner children; a tree has one less than nodes",
-                                planes.valid.size(), innerChildren));
+                                masks.size(), innerChildren));
     }
-    if (withHoisted && planes.hoisted.size() != innerNodes) {
-        return fail(ErrorCode::BadStructure, fmt::format("{} hoisted masks for {} nodes with inner children",
-                                                         planes.hoisted.size(), innerNodes));
-    }
-    return {};
+    return masks;
 }
 
 /// Gives every node the distance to its first child (in tree.nodes, for now) by walking the sibling blocks
 /// depth first.
-Result<void> walkBlocks(const NodePlanes& planes, NodeTree& tree) {
+Result<void> walkBlocks(const NodeMasks& masks, NodeTree& tree) {
     struct Block {
         std::uint32_t next;
         std::uint32_t end;
@@ -60,7 +72,7 @@ Result<void> walkBlocks(const NodePlanes& planes, NodeTree& tree) {
             continue;
         }
         const std::uint32_t index = block.next++;
-        const unsigned inner = planes.inner[index];
+        const unsigned inner = masks.inner[index];
         if (inner == 0) {
             tree.nodes[index] = 0;
             continue;
@@ -68,28 +80,29 @@ Result<void> walkBlocks(const NodePlanes& planes, NodeTree& tree) {
         if (levels >= tree.depth) return badNode(index, "has inner children at the last level");
         const std::uint32_t first = allocated;
         allocated += static_cast<std::uint32_t>(std::popcount(inner));
-        // checkMasks: the sum of all inner children is the number of nodes, so allocated never runs past the
+        // joinMasks: the sum of all inner children is the number of nodes, so allocated never runs past the
         // end.
         tree.nodes[index] = first - index;
         stack[levels++] = {first, allocated};
     }
-    if (allocated != planes.valid.size()) {
+    if (allocated != masks.size()) {
         return badNode(allocated, "is not reached from the root");
     }
     return {};
 }
 
 /// Sets the mask bits of the lookup words and the covered flag of hoisted children, then the value pointers.
-Result<void> linkLookup(const NodePlanes& planes, const NodeTree& tree, std::vector<std::uint32_t>& lookup) {
-    lookup.assign(planes.valid.size(), 0);
-    std::size_t innerNode = 0;
-    for (std::size_t i = 0; i < planes.valid.size(); ++i) {
-        const unsigned inner = planes.inner[i];
-        const unsigned leaf = planes.valid[i] & ~inner;
+Result<void> linkLookup(const NodeMasks& masks, std::span<const std::uint8_t> hoistedPlane,
+                        const NodeTree& tree, std::vector<std::uint32_t>& lookup) {
+    lookup.assign(masks.size(), 0);
+    std::size_t branch = 0;
+    for (std::size_t i = 0; i < masks.size(); ++i) {
+        const unsigned inner = masks.inner[i];
+        const unsigned leaf = masks.leaf[i];
         const bool covered = (lookup[i] & kCovered) != 0;
         unsigned hoisted = 0;
         if (inner != 0) {
-            hoisted = planes.hoisted[innerNode++];
+            hoisted = hoistedPlane[branch++];
             if ((hoisted & ~inner) != 0) return badNode(i, "a hoisted value belongs to no inner child");
             if (covered && hoisted != 0) return badNode(i, "a hoisted value lies below another");
             const std::size_t firstChild = i + tree.nodes[i];
@@ -111,18 +124,18 @@ Result<void> linkLookup(const NodePlanes& planes, const NodeTree& tree, std::vec
 }
 
 /// From masks and distances to child descriptors and the far table.
-Result<void> writeDescriptors(const NodePlanes& planes, NodeTree& tree) {
+Result<void> writeDescriptors(const NodeMasks& masks, NodeTree& tree) {
     tree.farTable.clear();
     for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
         const std::uint32_t distance = tree.nodes[i];
-        const unsigned leaf = planes.valid[i] & ~static_cast<unsigned>(planes.inner[i]);
-        const std::uint32_t masks = leaf | (static_cast<std::uint32_t>(planes.valid[i]) << 8);
+        const std::uint32_t valid = static_cast<std::uint32_t>(masks.leaf[i]) | masks.inner[i];
+        const std::uint32_t word = masks.leaf[i] | (valid << 8);
         if (distance <= node::kMaxNearPointer) {
-            tree.nodes[i] = masks | (distance << node::kPointerShift);
+            tree.nodes[i] = word | (distance << node::kPointerShift);
         } else {
             if (tree.farTable.size() > node::kMaxNearPointer)
                 return badNode(i, "more than 32768 far pointers");
-            tree.nodes[i] = masks | node::kFarBit |
+            tree.nodes[i] = word | node::kFarBit |
                             (static_cast<std::uint32_t>(tree.farTable.size()) << node::kPointerShift);
             tree.farTable.push_back(distance);
         }
@@ -132,36 +145,56 @@ Result<void> writeDescriptors(const NodePlanes& planes, NodeTree& tree) {
 
 }  // namespace
 
-std::size_t countInnerNodes(const NodeTree& tree) {
+std::size_t countBranches(const NodeTree& tree) {
     return static_cast<std::size_t>(
         std::ranges::count_if(tree.nodes, [](std::uint32_t d) { return node::innerMask(d) != 0; }));
 }
 
+NodePlanes cutPlanes(std::span<const std::uint8_t> bytes, std::size_t nodes, std::size_t branches,
+                     bool hoisted) {
+    NodePlanes planes;
+    planes.inner = bytes.first(nodes);
+    planes.branchLeaves = bytes.subspan(nodes, branches);
+    planes.hoisted = bytes.subspan(nodes + branches, hoisted ? branches : 0);
+    planes.tipLeaves = bytes.subspan(nodes + branches + planes.hoisted.size());
+    return planes;
+}
+
 std::vector<std::uint8_t> splitPlanes(const NodeTree& tree, std::span<const std::uint32_t> lookup) {
+    const bool hoisted = !lookup.empty();
     const std::size_t n = tree.nodes.size();
-    std::vector<std::uint8_t> planes(2 * n + (lookup.empty() ? 0 : countInnerNodes(tree)));
-    std::uint8_t* hoisted = planes.data() + 2 * n;
+    const std::size_t m = countBranches(tree);
+    std::vector<std::uint8_t> planes(planeBytes(n, m, hoisted));
+    std::uint8_t* branchLeaves = planes.data() + n;
+    std::uint8_t* hoistedMask = branchLeaves + m;
+    std::uint8_t* tipLeaves = hoistedMask + (hoisted ? m : 0);
     for (std::size_t i = 0; i < n; ++i) {
         const std::uint32_t inner = node::innerMask(tree.nodes[i]);
-        planes[i] = static_cast<std::uint8_t>(node::validMask(tree.nodes[i]));
-        planes[n + i] = static_cast<std::uint8_t>(inner);
-        if (inner != 0 && !lookup.empty()) *hoisted++ = static_cast<std::uint8_t>(lookup[i] & inner);
+        const auto leaf = static_cast<std::uint8_t>(node::leafMask(tree.nodes[i]));
+        planes[i] = static_cast<std::uint8_t>(inner);
+        if (inner == 0) {
+            *tipLeaves++ = leaf;
+            continue;
+        }
+        *branchLeaves++ = leaf;
+        if (hoisted) *hoistedMask++ = static_cast<std::uint8_t>(lookup[i] & inner);
     }
     return planes;
 }
 
 Result<void> linkPlanes(const NodePlanes& planes, NodeTree& tree, std::vector<std::uint32_t>* lookup) {
-    if (planes.valid.empty() || planes.inner.size() != planes.valid.size()) {
-        return fail(ErrorCode::BadStructure, "a tree needs at least its root");
-    }
+    if (planes.inner.empty()) return fail(ErrorCode::BadStructure, "a tree needs at least its root");
     if (tree.depth == 0 || tree.depth > kMaxTreeDepth) {
         return fail(ErrorCode::BadStructure, fmt::format("a tree of {} levels", tree.depth));
     }
-    PFVOX_CHECK(checkMasks(planes, lookup != nullptr));
-    tree.nodes.resize(planes.valid.size());
-    PFVOX_CHECK(walkBlocks(planes, tree));
-    if (lookup != nullptr) PFVOX_CHECK(linkLookup(planes, tree, *lookup));
-    return writeDescriptors(planes, tree);
+    if (lookup != nullptr && planes.hoisted.size() != planes.branchLeaves.size()) {
+        return fail(ErrorCode::BadStructure, "the hoisted plane has another length than the branch plane");
+    }
+    PFVOX_TRY(const NodeMasks, masks, joinMasks(planes));
+    tree.nodes.resize(masks.size());
+    PFVOX_CHECK(walkBlocks(masks, tree));
+    if (lookup != nullptr) PFVOX_CHECK(linkLookup(masks, planes.hoisted, tree, *lookup));
+    return writeDescriptors(masks, tree);
 }
 
 }  // namespace pfvox::octree

@@ -26,7 +26,7 @@ Result<void> checkRegionRecord(const layout::Region& r, std::size_t paletteSize)
     if (r.depth == 0 || r.depth > layout::kMaxRegionDepth) {
         return fail(ErrorCode::BadValue, fmt::format("depth {}", r.depth));
     }
-    if (r.nodeCount == 0 || r.nodeCount > layout::kMaxRegionNodes || r.innerNodeCount > r.nodeCount) {
+    if (r.nodeCount == 0 || r.nodeCount > layout::kMaxRegionNodes || r.branchCount > r.nodeCount) {
         return fail(ErrorCode::BadValue, fmt::format("{} nodes", r.nodeCount));
     }
     if (r.valueCount == 0 || r.valueCount > layout::kMaxRegionValues) {
@@ -57,6 +57,8 @@ Result<void> checkModelRecord(const layout::Model& m, std::uint64_t nextRegion, 
         return fail(ErrorCode::LimitExceeded,
                     fmt::format("{} regions, more than maxRegions = {}", m.regionCount, limits.maxRegions));
     }
+    if (m.topBranchCount > m.topNodeCount)
+        return fail(ErrorCode::BadValue, "more branches than nodes in its top tree");
     const bool hasTopTree = m.topNodeCount != 0;
     if (hasTopTree != (m.regionCount > 1) || hasTopTree != (m.depth > layout::kMaxRegionDepth)) {
         return fail(ErrorCode::BadStructure, "top tree, depth and number of regions contradict each other");
@@ -153,8 +155,8 @@ Result<void> readTopTree(const layout::Model& record, std::span<const std::uint8
                          std::span<const layout::Region> regions, OctreeModel& model) {
     const std::size_t n = record.topNodeCount;
     model.topTree.depth = record.depth - layout::kMaxRegionDepth;
-    PFVOX_CHECK(octree::linkPlanes({.valid = planes.first(n), .inner = planes.subspan(n, n), .hoisted = {}},
-                                   model.topTree, nullptr));
+    PFVOX_CHECK(octree::linkPlanes(octree::cutPlanes(planes, n, record.topBranchCount, false), model.topTree,
+                                   nullptr));
     if (model.topTree.farTable.size() != record.topFarCount) {
         return fail(ErrorCode::BadStructure, "wrong number of far pointers");
     }
@@ -203,11 +205,10 @@ Result<OctreeRegion> readRegion(std::span<const std::byte> file, const layout::R
     region.palette.assign(palette.begin(), palette.end());
 
     const std::size_t n = record.nodeCount;
-    PFVOX_TRY(const auto, planes, readSection(file, *sections.mask, 2 * n + record.innerNodeCount));
-    const std::span all(planes);
-    auto linked =
-        octree::linkPlanes({.valid = all.first(n), .inner = all.subspan(n, n), .hoisted = all.subspan(2 * n)},
-                           region.tree, &region.lookup);
+    PFVOX_TRY(const auto, planes,
+              readSection(file, *sections.mask, octree::planeBytes(n, record.branchCount, true)));
+    auto linked = octree::linkPlanes(octree::cutPlanes(planes, n, record.branchCount, true), region.tree,
+                                     &region.lookup);
     if (!linked) return failInSection(*sections.mask, linked.error().code, describe(linked.error()));
     const std::uint32_t last = region.lookup.back();
     const std::uint64_t values = (last >> 8) + static_cast<std::uint64_t>(std::popcount(last & 0xffu));

@@ -102,6 +102,7 @@ layout::Model toLayout(const OctreeModel& model, std::uint32_t firstRegion, Name
             .firstRegion = firstRegion,
             .regionCount = static_cast<std::uint32_t>(model.regions.size()),
             .topNodeCount = static_cast<std::uint32_t>(model.topTree.nodes.size()),
+            .topBranchCount = static_cast<std::uint32_t>(octree::countBranches(model.topTree)),
             .topFarCount = static_cast<std::uint32_t>(model.topTree.farTable.size()),
             .reserved = {}};
 }
@@ -115,7 +116,7 @@ layout::Region toLayout(const OctreeRegion& region, std::uint32_t paletteFirst) 
     return {.origin = toArray(region.originVoxels),
             .depth = region.tree.depth,
             .nodeCount = static_cast<std::uint32_t>(region.tree.nodes.size()),
-            .innerNodeCount = static_cast<std::uint32_t>(octree::countInnerNodes(region.tree)),
+            .branchCount = static_cast<std::uint32_t>(octree::countBranches(region.tree)),
             .farCount = static_cast<std::uint32_t>(region.tree.farTable.size()),
             .valueCount = static_cast<std::uint32_t>(region.valueCount()),
             .paletteFirst = paletteFirst,
@@ -228,8 +229,11 @@ Result<std::vector<std::byte>> encodePfVox(const OctreeAsset& asset, const Encod
                                                 .region = id,
                                                 .count = region.tree.nodes.size(),
                                                 .raw = octree::splitPlanes(region.tree, region.lookup)};
-        sections[firstRegionSection + 2 * i + 1] = {
-            .fourcc = "ATTR", .region = id, .count = region.valueCount(), .raw = region.values};
+        sections[firstRegionSection + 2 * i + 1] = {.fourcc = "ATTR",
+                                                    .region = id,
+                                                    .count = region.valueCount(),
+                                                    .texture = Texture::LocalSymbols,
+                                                    .raw = region.values};
     });
     return writeSections(std::move(sections), settings);
 }

@@ -79,8 +79,9 @@ struct Model {
     std::uint32_t firstRegion;
     std::uint32_t regionCount;
     std::uint32_t topNodeCount;
+    std::uint32_t topBranchCount;
     std::uint32_t topFarCount;
-    std::array<std::uint32_t, 3> reserved;
+    std::array<std::uint32_t, 2> reserved;
 };
 static_assert(sizeof(Model) == 80 && offsetof(Model, depth) == 44);
 
@@ -89,7 +90,7 @@ struct Region {
     std::array<std::int32_t, 3> origin;
     std::uint32_t depth;
     std::uint32_t nodeCount;
-    std::uint32_t innerNodeCount;  ///< nodes with inner children: length of the hoisted plane
+    std::uint32_t branchCount;  ///< nodes with inner children
     std::uint32_t farCount;
     std::uint32_t valueCount;
     std::uint32_t paletteFirst;  ///< first entry in PALT

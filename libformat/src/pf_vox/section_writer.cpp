@@ -32,6 +32,16 @@ std::uint64_t alignUp(std::uint64_t value) {
     return (value + layout::kAlignment - 1) & ~(layout::kAlignment - 1);
 }
 
+/// Settings of the next frame. Values out of range are impossible here, so the results need no check.
+void configure(ZSTD_CCtx* context, int level, Texture texture) {
+    ZSTD_CCtx_reset(context, ZSTD_reset_session_and_parameters);
+    ZSTD_CCtx_setParameter(context, ZSTD_c_compressionLevel, level);
+    if (texture == Texture::LocalSymbols) {
+        ZSTD_CCtx_setParameter(context, ZSTD_c_windowLog, 13);
+        ZSTD_CCtx_setParameter(context, ZSTD_c_minMatch, 7);
+    }
+}
+
 Result<Stored> store(SectionContent section, ZSTD_CCtx* context, int level) {
     Stored stored;
     std::ranges::copy(section.fourcc, stored.entry.fourcc.begin());
@@ -42,8 +52,9 @@ Result<Stored> store(SectionContent section, ZSTD_CCtx* context, int level) {
     stored.entry.rawHash = io::xxh3_64(std::as_bytes(std::span(section.raw)));
 
     std::vector<std::uint8_t> compressed(ZSTD_compressBound(section.raw.size()));
-    const std::size_t size = ZSTD_compressCCtx(context, compressed.data(), compressed.size(),
-                                               section.raw.data(), section.raw.size(), level);
+    configure(context, level, section.texture);
+    const std::size_t size =
+        ZSTD_compress2(context, compressed.data(), compressed.size(), section.raw.data(), section.raw.size());
     if (ZSTD_isError(size) != 0) {
         return fail(ErrorCode::Internal, fmt::format("zstd cannot compress section {}: {}", section.fourcc,
                                                      ZSTD_getErrorName(size)));
