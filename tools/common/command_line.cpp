@@ -193,10 +193,18 @@ ExitCode usageError(const CLI::App& command, const std::string& message) {
     return ExitCode::Usage;
 }
 
+std::function<std::string(const std::string&)> numberFrom(double low, double high) {
+    return [low, high](const std::string& text) -> std::string {
+        double value = 0.0;
+        if (CLI::detail::lexical_cast(text, value) && value >= low && value <= high) return {};
+        return fmt::format("{} is not a number from {} to {}", text, low, high);
+    };
+}
+
 void addCommonOptions(CLI::App& command, CommonOptions& options) {
     command.add_option("-j,--jobs", options.threads, "threads, 0 = one for each processor (default 0)")
         ->option_text("N")
-        ->check(CLI::Range(0, kMaxThreads))
+        ->check(numberFrom(0, kMaxThreads))
         ->group(group::kGeneral);
     auto* quiet = command.add_flag("-q,--quiet", options.quiet, "print errors only")->group(group::kGeneral);
     command.add_flag("-v,--verbose", options.verbose, "print notes too, and a line for every file")

@@ -8,6 +8,7 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -56,6 +57,9 @@ std::optional<ExitCode> parseCommandLine(CLI::App& tool, const std::vector<std::
 
 /// Reports wrong usage that the parser cannot see.
 ExitCode usageError(const CLI::App& command, const std::string& message);
+
+/// A check for options: refuses what is not a finite number from `low` to `high`. (CLI::Range lets NaN pass.)
+std::function<std::string(const std::string&)> numberFrom(double low, double high);
 
 /// Options of every subcommand.
 struct CommonOptions {

@@ -74,13 +74,13 @@ void addConversionOptions(CLI::App& command, ConvertOptions& options) {
         ->group(group::kConversion);
     command.add_option("--frame", patch.frame, "animation frame, 0 or more (default 0)")
         ->option_text("N")
-        ->check(CLI::Range(0, kMaxFrame))
+        ->check(numberFrom(0, kMaxFrame))
         ->group(group::kConversion);
     command
         .add_option("--voxel-size", patch.voxelSizeMetres,
                     "edge of a voxel, 1e-6 to 1e6 (default: as in the source, else 0.1)")
         ->option_text("METRES")
-        ->check(CLI::Range(kMinVoxelSizeMetres, kMaxVoxelSizeMetres))
+        ->check(numberFrom(kMinVoxelSizeMetres, kMaxVoxelSizeMetres))
         ->group(group::kConversion);
     command.add_flag("--archive", options.archive, "compress harder (zstd 9 instead of 3)")
         ->group(group::kConversion);
