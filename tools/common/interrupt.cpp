@@ -1,6 +1,7 @@
 #include "common/interrupt.hpp"
 
 #include <unistd.h>
+#include <atomic>
 #include <csignal>
 #include <mutex>
 #include <thread>
@@ -18,6 +19,9 @@ std::shared_mutex& writeGate() {
     return *gate;
 }
 
+/// Set once a signal came: new writers wait for the end of the process, or they could keep the gate from it.
+std::atomic<bool> isEnding{false};
+
 }  // namespace
 
 void exitOnInterrupt(std::function<void()> lastWords) {
@@ -29,12 +33,16 @@ void exitOnInterrupt(std::function<void()> lastWords) {
     std::thread([signals, lastWords = std::move(lastWords)] {
         int received = 0;
         sigwait(&signals, &received);
+        isEnding = true;
         const std::unique_lock lock(writeGate());
         lastWords();
         ::_exit(static_cast<int>(ExitCode::Interrupted));
     }).detach();
 }
 
-WriteGuard::WriteGuard() : lock_(writeGate()) {}
+WriteGuard::WriteGuard() : lock_(writeGate(), std::defer_lock) {
+    isEnding.wait(true);
+    lock_.lock();
+}
 
 }  // namespace pfvox::tools
