@@ -53,7 +53,7 @@ void forEachMaterial(VoxelAsset& asset, Visit visit) {
                 if (m != *uniform) region->fill(m);
                 continue;
             }
-            for (std::uint32_t c = 0; c < static_cast<std::uint32_t>(kRegionCells); ++c) {
+            for (std::uint32_t c = 0; c < region->cellEnd(); ++c) {
                 const VoxelRegion::Cell cell = region->cell(c);
                 if (cell.material) {
                     MaterialIndex m = *cell.material;

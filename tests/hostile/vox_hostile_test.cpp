@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <chrono>
+#include <cmath>
 #include <fstream>
 
 #include "support/corpus.hpp"
@@ -233,6 +234,25 @@ TEST(VoxHostile, Limits) {
     ASSERT_FALSE(memory);
     EXPECT_EQ(memory.error().code, ErrorCode::LimitExceeded);
     EXPECT_THAT(describe(memory.error()), HasSubstr("maxMemoryBytes"));
+}
+
+TEST(VoxHostile, InstancesCountAsMemory) {
+    VoxWriter writer = oneModel();
+    constexpr int kLevels = 20;  // 2^20 ways: allowed by maxInstances
+    for (int id = 0; id < kLevels; ++id) writer.group(id, {id + 1, id + 1});
+    ImportRun run;
+    run.limits.maxMemoryBytes = 1 << 20;
+    const auto asset = run(writer.shape({.id = kLevels}).finish());
+    ASSERT_FALSE(asset);
+    EXPECT_THAT(describe(asset.error()), HasSubstr("1048576 instances"));
+}
+
+TEST(VoxHostile, ImpossibleVoxelSizes) {
+    for (const double size : {0.0, -1.0, std::numeric_limits<double>::infinity(), std::nan("")}) {
+        ImportRun run;
+        run.settings.voxelSizeMetres = size;
+        EXPECT_FALSE(run(oneModel().finish())) << size;
+    }
 }
 
 TEST(VoxHostile, MergeOfFarInstancesIsBounded) {

@@ -1,6 +1,7 @@
 // Random scenes: whatever the graph, sizes, rotations and mirrors, the importer and the independent reader
 // agree on every world cell.
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 
 #include <random>
 
@@ -120,6 +121,26 @@ TEST(VoxPlacementProperty, MergedAndSeparateInstancesShowTheSame) {
         }
         const std::vector<std::pair<test::Cell, test::VoxelLook>> expected(world.begin(), world.end());
         EXPECT_TRUE(test::worldCellsOf(*merged, merged->instances[0]) == expected) << seed;
+    }
+}
+
+TEST(VoxPlacementProperty, ThreadsChangeNothing) {
+    const auto outcome = [](const std::string& bytes, std::size_t threads) {
+        const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
+        test::ImportRun run;
+        const auto asset = run(bytes);
+        std::string text = asset ? "" : describe(asset.error());
+        for (const Diagnostic& d : run.diagnostics.entries()) text += d.id + ": " + d.message + "\n";
+        std::vector<std::vector<std::pair<test::Cell, test::VoxelLook>>> cells;
+        if (asset) {
+            for (const Instance& instance : asset->instances)
+                cells.push_back(test::worldCellsOf(*asset, instance));
+        }
+        return std::make_pair(text, cells);
+    };
+    for (unsigned seed = 0; seed < 30; ++seed) {
+        const std::string bytes = RandomScene(seed).bytes();
+        EXPECT_TRUE(outcome(bytes, 1) == outcome(bytes, 8)) << seed;
     }
 }
 

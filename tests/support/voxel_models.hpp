@@ -15,7 +15,8 @@ struct NamedModel {
     VoxelModel model;
 };
 
-inline VoxelModel randomModel(std::uint32_t seed, glm::ivec3 min, glm::ivec3 max, double fill, int materials) {
+inline VoxelModel randomModel(std::uint32_t seed, glm::ivec3 min, glm::ivec3 max, double fill,
+                              int materials) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> chance(0.0, 1.0);
     std::uniform_int_distribution<int> material(0, materials - 1);
@@ -57,7 +58,9 @@ inline VoxelModel patchyModel(std::uint32_t seed, int edge) {
 /// Every case that the round trip must survive.
 inline std::vector<NamedModel> standardModels() {
     std::vector<NamedModel> models;
-    const auto add = [&](std::string name, VoxelModel model) { models.push_back({std::move(name), std::move(model)}); };
+    const auto add = [&](std::string name, VoxelModel model) {
+        models.push_back({std::move(name), std::move(model)});
+    };
     add("empty", {});
     add("single voxel", boxModel({0, 0, 0}, {1, 1, 1}, 3));
     add("single voxel in a corner", boxModel({255, 255, 255}, {256, 256, 256}, 1));
@@ -96,9 +99,18 @@ inline VoxelAsset assetOf(std::vector<VoxelModel> models) {
     VoxelAsset asset;
     asset.materials = {
         {.baseColor = {200, 40, 30, 255}, .name = "brick"},
-        {.baseColor = {30, 180, 50, 255}, .type = MaterialType::Metal, .metalness = 0.75f, .roughness = 0.25f},
-        {.baseColor = {250, 240, 200, 255}, .type = MaterialType::Emit, .emissionStrength = 12.5f, .name = "lamp"},
-        {.baseColor = {120, 160, 255, 90}, .type = MaterialType::Glass, .indexOfRefraction = 1.33f, .transparency = 0.8f},
+        {.baseColor = {30, 180, 50, 255},
+         .type = MaterialType::Metal,
+         .metalness = 0.75f,
+         .roughness = 0.25f},
+        {.baseColor = {250, 240, 200, 255},
+         .type = MaterialType::Emit,
+         .emissionStrength = 12.5f,
+         .name = "lamp"},
+        {.baseColor = {120, 160, 255, 90},
+         .type = MaterialType::Glass,
+         .indexOfRefraction = 1.33f,
+         .transparency = 0.8f},
     };
     asset.layers = {{.name = "ground", .hidden = false}, {.name = "draft", .hidden = true}};
     asset.cameras = {{.name = "front", .position = {1, 2, 3}, .target = {0, 0, 0}, .fovYDegrees = 50}};
@@ -106,8 +118,11 @@ inline VoxelAsset assetOf(std::vector<VoxelModel> models) {
     for (std::uint32_t i = 0; i < models.size(); ++i) {
         Affine worldFromModel = identityAffine();
         worldFromModel[3] = {0.5 * i, 1.0, -2.0};
-        asset.instances.push_back(
-            {.model = i, .worldFromModel = worldFromModel, .name = "instance", .layer = 0, .hidden = i % 2 == 1});
+        asset.instances.push_back({.model = i,
+                                   .worldFromModel = worldFromModel,
+                                   .name = "instance",
+                                   .layer = 0,
+                                   .hidden = i % 2 == 1});
     }
     asset.models = std::move(models);
     return asset;

@@ -64,6 +64,12 @@ class VoxelRegion {
     };
     Cell cell(std::uint32_t cellMorton) const;
 
+    /// Cells with this Morton code and above hold nothing of their own: walks may stop here. Morton order puts a small
+    /// model in the low corner into the first few codes. kRegionCells for a uniform region.
+    std::uint32_t cellEnd() const {
+        return uniform_ ? static_cast<std::uint32_t>(kRegionCells) : static_cast<std::uint32_t>(table_.size());
+    }
+
     /// The brick at this cell for writing; an empty or uniform cell becomes a brick first.
     Brick& brickAt(std::uint32_t cellMorton);
     /// Makes the cell one solid cube, replacing what it held.
@@ -83,11 +89,11 @@ class VoxelRegion {
     const Brick& brick(std::uint32_t index) const {
         return chunks_[index / kChunkBricks][index % kChunkBricks];
     }
-    void makeTable();
+    std::uint32_t& entryAt(std::uint32_t cellMorton);
 
     glm::ivec3 coord_;
     std::optional<MaterialIndex> uniform_;
-    std::vector<std::uint32_t> table_;  ///< kRegionCells entries once anything was written
+    std::vector<std::uint32_t> table_;  ///< by cell Morton code; a power of eight long, cells behind are empty
     std::vector<std::unique_ptr<Brick[]>> chunks_;
     std::size_t brickCount_ = 0;
 };

@@ -57,7 +57,8 @@ bool writeAll(int fd, std::span<const std::byte> bytes) {
 }  // namespace
 
 Result<FileBytes> readFile(const std::filesystem::path& file, std::uint64_t maxBytes) {
-    const Descriptor fd(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
+    // Without O_NONBLOCK, opening a pipe would wait for a writer, perhaps for ever.
+    const Descriptor fd(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
     if (!fd.valid()) {
         return errno == ENOENT ? systemError(ErrorCode::FileNotFound, file, "cannot open")
                                : systemError(ErrorCode::FileNotReadable, file, "cannot open");

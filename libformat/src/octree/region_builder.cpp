@@ -102,7 +102,7 @@ void measure(const VoxelRegion& source, OctreeRegion& region) {
         region.bounds = {origin, origin + kRegionEdge};
         return;
     }
-    for (std::uint32_t c = 0; c < static_cast<std::uint32_t>(kRegionCells); ++c) {
+    for (std::uint32_t c = 0; c < source.cellEnd(); ++c) {
         const VoxelRegion::Cell cell = source.cell(c);
         if (cell.empty()) continue;
         const glm::ivec3 corner = origin + glm::ivec3{mortonDecode(c)} * kBrickEdge;
@@ -126,7 +126,7 @@ void measure(const VoxelRegion& source, OctreeRegion& region) {
 
 bool isEmpty(const VoxelRegion& region) {
     if (region.uniform()) return false;
-    for (std::uint32_t c = 0; c < static_cast<std::uint32_t>(kRegionCells); ++c) {
+    for (std::uint32_t c = 0; c < region.cellEnd(); ++c) {
         const VoxelRegion::Cell cell = region.cell(c);
         if (cell.material) return false;
         if (cell.brick == nullptr) continue;
@@ -153,6 +153,7 @@ Slot RegionBuilder::buildBrick(const Brick& brick) {
 }
 
 Slot RegionBuilder::buildCells(const VoxelRegion& source, std::uint32_t firstCell, std::uint32_t level) {
+    if (firstCell >= source.cellEnd()) return {};
     if (level == kCellLevels) {
         const VoxelRegion::Cell cell = source.cell(firstCell);
         if (cell.material) return Slot::leaf(*cell.material);

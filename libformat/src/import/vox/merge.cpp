@@ -86,7 +86,7 @@ struct PlacedBrick {
 std::vector<PlacedBrick> bricksOf(const VoxelModel& model) {
     std::vector<PlacedBrick> bricks;
     for (const auto& region : model.regions()) {
-        for (std::uint32_t cell = 0; cell < static_cast<std::uint32_t>(kRegionCells); ++cell) {
+        for (std::uint32_t cell = 0; cell < region->cellEnd(); ++cell) {
             const Brick* brick = region->cell(cell).brick;
             if (brick == nullptr) continue;
             const glm::ivec3 corner =

@@ -88,8 +88,10 @@ class GraphChecker {
 /// Expands a checked graph.
 class GraphExpander {
   public:
-    GraphExpander(const SceneGraph& graph, const GraphChecker& checker, int frame)
-        : graph_(graph), checker_(checker), frame_(frame) {}
+    GraphExpander(const SceneGraph& graph, const GraphChecker& checker, int frame, std::size_t instances)
+        : graph_(graph), checker_(checker), frame_(frame) {
+        placements_.reserve(instances);
+    }
 
     /// `state` is what the way down to `node` gave; its model is not known yet.
     Result<void> expand(const Node& node, Placement state) {
@@ -149,8 +151,14 @@ Result<std::vector<Placement>> expandGraph(const SceneGraph& graph, std::uint32_
                     "the scene graph has no root: node 0 does not exist; the file is damaged");
     }
     GraphChecker checker(graph, modelCount, limits);
-    PFVOX_CHECK(checker.check(root->second, 0));
-    GraphExpander expander(graph, checker, frame);
+    PFVOX_TRY(const Extent, extent, checker.check(root->second, 0));
+    if (extent.instances * sizeof(Placement) > limits.maxMemoryBytes) {
+        return fail(
+            ErrorCode::LimitExceeded,
+            fmt::format("the {} instances of the scene graph take more than {} bytes (limit maxMemoryBytes)",
+                        extent.instances, limits.maxMemoryBytes));
+    }
+    GraphExpander expander(graph, checker, frame, extent.instances);
     PFVOX_CHECK(expander.expand(root->second, {}));
     return expander.take();
 }

@@ -37,7 +37,7 @@ inline constexpr std::int64_t kMaxTranslation = std::int64_t{1} << 30;
 
 /// All placements in depth-first order, children in their listed order, at one animation frame.
 /// Errors: BadReference for nodes and models that do not exist, BadStructure for cycles, BadValue for
-/// translations beyond kMaxTranslation, LimitExceeded for maxGraphDepth and maxInstances.
+/// translations beyond kMaxTranslation, LimitExceeded for maxGraphDepth, maxInstances and maxMemoryBytes.
 Result<std::vector<Placement>> expandGraph(const SceneGraph& graph, std::uint32_t modelCount, int frame,
                                            const Limits& limits);
 

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <algorithm>
+#include <cmath>
 
 #include "import/importer.hpp"
 #include "import/vox/instances.hpp"
@@ -25,7 +26,8 @@ bool hasDamagedMagic(std::span<const std::byte> bytes) {
 
 bool recognises(const SourceBytes& source) {
     if (io::asText(source.bytes).starts_with("VOX ")) return true;
-    return source.file.extension() == ".vox" && (hasDamagedMagic(source.bytes) || isSlab6(source.bytes));
+    const bool isNamedVox = source.file.extension() == ".vox" || source.file.extension() == ".VOX";
+    return isNamedVox && (hasDamagedMagic(source.bytes) || isSlab6(source.bytes));
 }
 
 std::vector<bool> modelsIn(const std::vector<GridInstance>& instances, std::size_t modelCount) {
@@ -156,12 +158,16 @@ Result<VoxelAsset> importVox(const SourceBytes& source, const ImportSettings& se
                     ".vox; open it in MagicaVoxel or SLAB6 and export it anew");
     }
     const double voxelSizeMetres = settings.voxelSizeMetres.value_or(kDefaultVoxelSizeMetres);
+    if (!(voxelSizeMetres > 0.0) || !std::isfinite(voxelSizeMetres)) {
+        return fail(ErrorCode::BadValue,
+                    fmt::format("a voxel of {} m is impossible: give a size above 0", voxelSizeMetres));
+    }
     PFVOX_TRY(VoxFile, file, readVoxFile(source.bytes, voxelSizeMetres, limits, diagnostics));
     PFVOX_TRY(const std::vector<GridInstance>, instances, findInstances(file, settings, limits, diagnostics));
     PFVOX_CHECK(checkInstanceMemory(instances, limits));
 
     std::vector<bool> wanted = modelsIn(instances, file.models.size());
-    reportUnshownModels(wanted, settings, diagnostics);
+    if (!file.graph.nodes.empty()) reportUnshownModels(wanted, settings, diagnostics);
     if (settings.includeHidden && !settings.merge) wanted.assign(wanted.size(), true);
     PFVOX_TRY(ModelSet, set, buildModels(file.models, wanted, limits, diagnostics));
 
