@@ -50,7 +50,7 @@ void placeBuildings(SceneBuilder& builder, const DemoPalette& p) {
     const int stairs = builder.addModel(makeStairs(p));
     const int arch = builder.addModel(makeArch(p));
     builder.place("house", house, {-34, 19, kGroundTop}, kBuildings);
-    builder.place("tower", tower, {-63, 31, kGroundTop}, kBuildings);
+    builder.place("tower", tower, {-63, 29, kGroundTop}, kBuildings);
     builder.place("stairs", stairs, {34, 17, kGroundTop}, kBuildings);
     builder.scene.nodes.push_back(arcade(builder, arch, "left arcade", {}));
     builder.scene.nodes.push_back(arcade(builder, arch, "right arcade", mirroredX()));
