@@ -229,7 +229,7 @@ TEST(VoxHostile, Limits) {
     ASSERT_FALSE(models);
     EXPECT_THAT(describe(models.error()), HasSubstr("maxModels"));
     run.limits = {};
-    run.limits.maxMemoryBytes = 100000;
+    run.limits.maxMemoryBytes = 20000;
     const auto memory = run(smallFile());
     ASSERT_FALSE(memory);
     EXPECT_EQ(memory.error().code, ErrorCode::LimitExceeded);
