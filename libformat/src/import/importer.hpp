@@ -1,5 +1,5 @@
-// Importer: what one source format gives to the registry (registry.cpp). A new format is a new folder with one function
-// that returns this, and one line in the registry.
+// Importer: what one source format gives to the registry (registry.cpp). A new format is a new folder with
+// one function that returns this, and one line in the registry.
 #pragma once
 
 #include <filesystem>
@@ -18,10 +18,13 @@ struct Importer {
     SourceFormat format;
     /// Whether the content is of this format; looks at the first bytes only.
     bool (*recognises)(const SourceBytes& source);
-    Result<VoxelAsset> (*import)(const SourceBytes& source, const ImportSettings& settings, const Limits& limits,
-                                 Diagnostics& diagnostics);
+    Result<VoxelAsset> (*import)(const SourceBytes& source, const ImportSettings& settings,
+                                 const Limits& limits, Diagnostics& diagnostics);
 };
 
 Importer voxImporter();
+Importer svxImporter();
+Importer vdbImporter();
+Importer legacyImporter();
 
 }  // namespace pfvox::import

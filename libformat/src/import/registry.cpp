@@ -1,6 +1,6 @@
+#include <fmt/format.h>
 #include <algorithm>
 #include <array>
-#include <fmt/format.h>
 #include <pfvox/import.hpp>
 #include <string>
 #include <vector>
@@ -14,13 +14,20 @@ namespace pfvox {
 namespace {
 
 const std::vector<import::Importer>& importers() {
-    static const std::vector<import::Importer> all{import::voxImporter()};
+    // Formats with a magic number first; the legacy format has none and is recognised by its name and sizes.
+    static const std::vector<import::Importer> all{
+        import::voxImporter(),
+        import::svxImporter(),
+        import::vdbImporter(),
+        import::legacyImporter(),
+    };
     return all;
 }
 
 std::string lowerCaseExtension(const std::filesystem::path& file) {
     std::string extension = file.extension().string();
-    std::ranges::transform(extension, extension.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? c + 32 : c; });
+    std::ranges::transform(extension, extension.begin(),
+                           [](char c) { return c >= 'A' && c <= 'Z' ? c + 32 : c; });
     return extension;
 }
 
@@ -31,13 +38,14 @@ std::string nameForeignContent(std::span<const std::byte> bytes) {
     if (text.starts_with("version https://git-lfs")) {
         return "this is a Git LFS pointer, not the file itself: run `git lfs pull`";
     }
-    if (text.starts_with("SQLite format 3")) return "this is an SQLite database (Cubiquity keeps its voxels so)";
+    if (text.starts_with("SQLite format 3"))
+        return "this is an SQLite database (Cubiquity keeps its voxels so)";
     if (text.starts_with("PFVOX")) return "this is a PF_VOX file, already converted";
     if (text.starts_with("\x89PNG")) return "this is a PNG picture";
-    const bool printable = std::ranges::all_of(text, [](char c) {
-        return (c >= 32 && c < 127) || c == '\n' || c == '\r' || c == '\t';
-    });
-    return printable ? "this is a text file, not a voxel source" : "no known voxel source: the first bytes fit none";
+    const bool printable = std::ranges::all_of(
+        text, [](char c) { return (c >= 32 && c < 127) || c == '\n' || c == '\r' || c == '\t'; });
+    return printable ? "this is a text file, not a voxel source"
+                     : "no known voxel source: the first bytes fit none";
 }
 
 }  // namespace
@@ -53,24 +61,30 @@ std::span<const SourceFormat> sourceFormats() {
 
 bool looksLikeSource(const std::filesystem::path& file) {
     const std::string extension = lowerCaseExtension(file);
-    return std::ranges::any_of(sourceFormats(), [&](const SourceFormat& f) { return f.extension == extension; });
+    // Ours and the thesis's files share this name: folder mode must not take its own output for input. Legacy
+    // files are converted when they are named one by one.
+    if (extension == ".pf_vox") return false;
+    return std::ranges::any_of(sourceFormats(),
+                               [&](const SourceFormat& f) { return f.extension == extension; });
 }
 
 Result<VoxelAsset> importBytes(std::span<const std::byte> bytes, const std::filesystem::path& file,
-                               const ImportSettings& settings, const Limits& limits, Diagnostics& diagnostics) {
+                               const ImportSettings& settings, const Limits& limits,
+                               Diagnostics& diagnostics) {
     const import::SourceBytes source{.bytes = bytes, .file = file};
     const auto withFile = [&](Result<VoxelAsset> result) {
         if (!result && result.error().file.empty()) result.error().file = file;
         return result;
     };
     for (const import::Importer& importer : importers()) {
-        if (importer.recognises(source)) return withFile(importer.import(source, settings, limits, diagnostics));
+        if (importer.recognises(source))
+            return withFile(importer.import(source, settings, limits, diagnostics));
     }
     return withFile(fail(ErrorCode::UnsupportedFormat, nameForeignContent(bytes)));
 }
 
-Result<VoxelAsset> importFile(const std::filesystem::path& file, const ImportSettings& settings, const Limits& limits,
-                              Diagnostics& diagnostics) {
+Result<VoxelAsset> importFile(const std::filesystem::path& file, const ImportSettings& settings,
+                              const Limits& limits, Diagnostics& diagnostics) {
     PFVOX_TRY(const io::FileBytes, contents, io::readFile(file, limits.maxFileBytes));
     return importBytes(contents.bytes(), file, settings, limits, diagnostics);
 }
