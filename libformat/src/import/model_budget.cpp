@@ -4,6 +4,20 @@
 
 namespace pfvox::import {
 
+namespace {
+
+// Both keep what may be written between two checks far below the limits: 16 MiB of bricks, 10 MiB of empty
+// tables.
+constexpr std::uint64_t kStepsPerCheck = 16384;
+constexpr std::size_t kRegionsPerCheck = 64;
+
+}  // namespace
+
+void ModelBudget::close(const VoxelModel& model) {
+    closedBytes_ += model.memoryBytes();
+    regionsAtNextCheck_ = 0;
+}
+
 Result<void> ModelBudget::check(const VoxelModel& model) const {
     if (model.regions().size() > limits_.maxRegions) {
         return fail(ErrorCode::LimitExceeded,
@@ -16,6 +30,12 @@ Result<void> ModelBudget::check(const VoxelModel& model) const {
                                 limits_.maxMemoryBytes));
     }
     return {};
+}
+
+Result<void> ModelBudget::step(const VoxelModel& model) {
+    if (++steps_ % kStepsPerCheck != 0 && model.regions().size() < regionsAtNextCheck_) return {};
+    regionsAtNextCheck_ = model.regions().size() + kRegionsPerCheck;
+    return check(model);
 }
 
 Result<void> ModelBudget::checkTile(const VoxelModel& model, int edgeLog2) const {

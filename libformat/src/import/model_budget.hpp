@@ -19,16 +19,21 @@ class ModelBudget {
     /// maxMemoryBytes.
     Result<void> check(const VoxelModel& model) const;
 
+    /// check(), but only now and then: for importers that write many small pieces and ask after each.
+    Result<void> step(const VoxelModel& model);
+
     /// LimitExceeded when a solid cube of edge 2^edgeLog2 would add more regions than the model may still
     /// have.
     Result<void> checkTile(const VoxelModel& model, int edgeLog2) const;
 
     /// Counts a finished model against the memory of the asset.
-    void close(const VoxelModel& model) { closedBytes_ += model.memoryBytes(); }
+    void close(const VoxelModel& model);
 
   private:
     Limits limits_;
     std::uint64_t closedBytes_ = 0;
+    std::uint64_t steps_ = 0;
+    std::size_t regionsAtNextCheck_ = 0;
 };
 
 }  // namespace pfvox::import

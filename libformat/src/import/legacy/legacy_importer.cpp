@@ -15,8 +15,6 @@ namespace pfvox::import {
 
 namespace {
 
-/// Leaf cubes written between two looks at the budget.
-constexpr std::uint64_t kLeavesPerCheck = 4096;
 /// VoxelModel::fillTile takes no larger cube at once.
 constexpr int kLargestTileEdgeLog2 = 15;
 
@@ -50,7 +48,7 @@ class LeafWriter {
                     cubes[nextInner++] = {.corner = child, .edgeLog2 = edgeLog2 - 1};
                     continue;
                 }
-                if (nextLeaf % kLeavesPerCheck == 0) PFVOX_CHECK(budget_.check(model_));
+                PFVOX_CHECK(budget_.step(model_));
                 PFVOX_CHECK(
                     write(child, edgeLog2, static_cast<MaterialIndex>(file_.leafMaterials[nextLeaf++])));
             }
