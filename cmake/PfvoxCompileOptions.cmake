@@ -4,7 +4,8 @@
 function(pfvox_compile_options target)
   target_compile_options(${target} PRIVATE
     -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wold-style-cast
-    -Wnon-virtual-dtor -Woverloaded-virtual -Wcast-qual -Wundef)
+    -Wnon-virtual-dtor -Woverloaded-virtual -Wcast-qual -Wundef
+    -Wno-missing-field-initializers) # naming some fields and leaving the others to their defaults is our style
   if(PFVOX_WARNINGS_AS_ERRORS)
     target_compile_options(${target} PRIVATE -Werror)
   endif()

@@ -10,13 +10,20 @@ namespace pfvox {
 
 const char* toString(MaterialType type) {
     switch (type) {
-        case MaterialType::Diffuse: return "diffuse";
-        case MaterialType::Metal: return "metal";
-        case MaterialType::Glass: return "glass";
-        case MaterialType::Emit: return "emit";
-        case MaterialType::Plastic: return "plastic";
-        case MaterialType::Blend: return "blend";
-        case MaterialType::Media: return "media";
+        case MaterialType::Diffuse:
+            return "diffuse";
+        case MaterialType::Metal:
+            return "metal";
+        case MaterialType::Glass:
+            return "glass";
+        case MaterialType::Emit:
+            return "emit";
+        case MaterialType::Plastic:
+            return "plastic";
+        case MaterialType::Blend:
+            return "blend";
+        case MaterialType::Media:
+            return "media";
     }
     return "unknown";
 }
@@ -46,7 +53,7 @@ void forEachMaterial(VoxelAsset& asset, Visit visit) {
                 if (m != *uniform) region->fill(m);
                 continue;
             }
-            for (std::uint32_t c = 0; c < static_cast<std::uint32_t>(kRegionCells); ++c) {
+            for (std::uint32_t c = 0; c < region->cellEnd(); ++c) {
                 const VoxelRegion::Cell cell = region->cell(c);
                 if (cell.material) {
                     MaterialIndex m = *cell.material;
@@ -56,7 +63,8 @@ void forEachMaterial(VoxelAsset& asset, Visit visit) {
                     Brick& brick = region->brickAt(c);
                     for (std::uint32_t word = 0; word < 8; ++word) {
                         for (std::uint64_t bits = brick.occupancy[word]; bits != 0; bits &= bits - 1) {
-                            visit(brick.materials[word * 64 + static_cast<std::uint32_t>(std::countr_zero(bits))]);
+                            visit(brick.materials[word * 64 +
+                                                  static_cast<std::uint32_t>(std::countr_zero(bits))]);
                         }
                     }
                 }
@@ -74,9 +82,9 @@ void compactMaterials(VoxelAsset& asset) {
     });
 
     const auto key = [](const Material& m) {
-        return std::make_tuple(m.baseColor.x, m.baseColor.y, m.baseColor.z, m.baseColor.w, m.type, m.metalness,
-                               m.roughness, m.specular, m.indexOfRefraction, m.emissionStrength, m.transparency,
-                               m.density, m.phase, m.name);
+        return std::make_tuple(m.baseColor.x, m.baseColor.y, m.baseColor.z, m.baseColor.w, m.type,
+                               m.metalness, m.roughness, m.specular, m.indexOfRefraction, m.emissionStrength,
+                               m.transparency, m.density, m.phase, m.name);
     };
     std::map<decltype(key(Material{})), MaterialIndex> known;
     std::vector<Material> kept;

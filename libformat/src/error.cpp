@@ -1,6 +1,6 @@
+#include <fmt/format.h>
 #include <cstdio>
 #include <cstdlib>
-#include <fmt/format.h>
 #include <pfvox/assert.hpp>
 #include <pfvox/error.hpp>
 
@@ -8,25 +8,44 @@ namespace pfvox {
 
 std::string_view toString(ErrorCode code) {
     switch (code) {
-        case ErrorCode::FileNotFound: return "file-not-found";
-        case ErrorCode::FileNotReadable: return "file-not-readable";
-        case ErrorCode::FileNotWritable: return "file-not-writable";
-        case ErrorCode::Truncated: return "truncated";
-        case ErrorCode::BadMagic: return "bad-magic";
-        case ErrorCode::BadValue: return "bad-value";
-        case ErrorCode::BadReference: return "bad-reference";
-        case ErrorCode::BadStructure: return "bad-structure";
-        case ErrorCode::ChecksumMismatch: return "checksum-mismatch";
-        case ErrorCode::NothingToConvert: return "nothing-to-convert";
-        case ErrorCode::UnsupportedFormat: return "unsupported-format";
-        case ErrorCode::UnsupportedVersion: return "unsupported-version";
-        case ErrorCode::UnsupportedFeature: return "unsupported-feature";
-        case ErrorCode::LimitExceeded: return "limit-exceeded";
-        case ErrorCode::GpuUnavailable: return "gpu-unavailable";
-        case ErrorCode::GpuLost: return "gpu-lost";
-        case ErrorCode::GpuOutOfMemory: return "gpu-out-of-memory";
-        case ErrorCode::Cancelled: return "cancelled";
-        case ErrorCode::Internal: return "internal";
+        case ErrorCode::FileNotFound:
+            return "file-not-found";
+        case ErrorCode::FileNotReadable:
+            return "file-not-readable";
+        case ErrorCode::FileNotWritable:
+            return "file-not-writable";
+        case ErrorCode::Truncated:
+            return "truncated";
+        case ErrorCode::BadMagic:
+            return "bad-magic";
+        case ErrorCode::BadValue:
+            return "bad-value";
+        case ErrorCode::BadReference:
+            return "bad-reference";
+        case ErrorCode::BadStructure:
+            return "bad-structure";
+        case ErrorCode::ChecksumMismatch:
+            return "checksum-mismatch";
+        case ErrorCode::NothingToConvert:
+            return "nothing-to-convert";
+        case ErrorCode::UnsupportedFormat:
+            return "unsupported-format";
+        case ErrorCode::UnsupportedVersion:
+            return "unsupported-version";
+        case ErrorCode::UnsupportedFeature:
+            return "unsupported-feature";
+        case ErrorCode::LimitExceeded:
+            return "limit-exceeded";
+        case ErrorCode::GpuUnavailable:
+            return "gpu-unavailable";
+        case ErrorCode::GpuLost:
+            return "gpu-lost";
+        case ErrorCode::GpuOutOfMemory:
+            return "gpu-out-of-memory";
+        case ErrorCode::Cancelled:
+            return "cancelled";
+        case ErrorCode::Internal:
+            return "internal";
     }
     return "unknown";
 }
@@ -35,7 +54,8 @@ std::string describe(const Error& error) {
     std::string text;
     if (!error.file.empty()) text += error.file.string() + ": ";
     if (!error.context.empty()) text += error.context;
-    if (error.offsetBytes) text += fmt::format("{}@0x{:x}", error.context.empty() ? "" : " ", *error.offsetBytes);
+    if (error.offsetBytes)
+        text += fmt::format("{}@0x{:x}", error.context.empty() ? "" : " ", *error.offsetBytes);
     if (!error.context.empty() || error.offsetBytes) text += ": ";
     return text + error.message;
 }
@@ -44,7 +64,8 @@ tl::unexpected<Error> fail(ErrorCode code, std::string message) {
     return tl::make_unexpected(Error{.code = code, .message = std::move(message)});
 }
 
-tl::unexpected<Error> failAt(ErrorCode code, std::uint64_t offsetBytes, std::string context, std::string message) {
+tl::unexpected<Error> failAt(ErrorCode code, std::uint64_t offsetBytes, std::string context,
+                             std::string message) {
     return tl::make_unexpected(Error{.code = code,
                                      .message = std::move(message),
                                      .offsetBytes = offsetBytes,

@@ -41,23 +41,29 @@ VoxelBox brickBounds(const Brick& brick) {
 
 VoxelRegion::Cell VoxelRegion::cell(std::uint32_t cellMorton) const {
     if (uniform_) return {.brick = nullptr, .material = uniform_};
-    if (table_.empty()) return {};
+    if (cellMorton >= table_.size()) return {};
     const std::uint32_t entry = table_[cellMorton];
     if (entry == kEmpty) return {};
-    if ((entry & kUniformFlag) != 0) return {.brick = nullptr, .material = static_cast<MaterialIndex>(entry & 0xffffu)};
+    if ((entry & kUniformFlag) != 0)
+        return {.brick = nullptr, .material = static_cast<MaterialIndex>(entry & 0xffffu)};
     return {.brick = &brick(entry), .material = std::nullopt};
 }
 
-void VoxelRegion::makeTable() {
-    if (table_.empty()) {
-        table_.assign(kRegionCells, uniform_ ? (kUniformFlag | *uniform_) : kEmpty);
+std::uint32_t& VoxelRegion::entryAt(std::uint32_t cellMorton) {
+    if (uniform_) {
+        table_.assign(kRegionCells, kUniformFlag | *uniform_);
         uniform_.reset();
     }
+    if (cellMorton >= table_.size()) {
+        std::size_t size = std::max<std::size_t>(table_.size(), 1);
+        while (size <= cellMorton) size *= 8;
+        table_.resize(size, kEmpty);
+    }
+    return table_[cellMorton];
 }
 
 Brick& VoxelRegion::brickAt(std::uint32_t cellMorton) {
-    makeTable();
-    std::uint32_t& entry = table_[cellMorton];
+    std::uint32_t& entry = entryAt(cellMorton);
     if (entry != kEmpty && (entry & kUniformFlag) == 0) return brick(entry);
     if (brickCount_ == chunks_.size() * kChunkBricks) {
         chunks_.push_back(std::make_unique_for_overwrite<Brick[]>(kChunkBricks));
@@ -74,9 +80,8 @@ Brick& VoxelRegion::brickAt(std::uint32_t cellMorton) {
 }
 
 void VoxelRegion::fillCell(std::uint32_t cellMorton, MaterialIndex material) {
-    makeTable();
     // A brick that this replaces stays allocated; tiles over voxels are rare.
-    table_[cellMorton] = kUniformFlag | material;
+    entryAt(cellMorton) = kUniformFlag | material;
 }
 
 void VoxelRegion::fill(MaterialIndex material) {
@@ -87,7 +92,8 @@ void VoxelRegion::fill(MaterialIndex material) {
 }
 
 std::uint64_t VoxelRegion::memoryBytes() const {
-    return sizeof(*this) + table_.capacity() * sizeof(std::uint32_t) + chunks_.size() * kChunkBricks * sizeof(Brick);
+    return sizeof(*this) + table_.capacity() * sizeof(std::uint32_t) +
+           chunks_.size() * kChunkBricks * sizeof(Brick);
 }
 
 // --- VoxelModel ---
@@ -158,7 +164,7 @@ std::uint64_t VoxelModel::voxelCount() const {
             count += std::uint64_t{1} << (3 * kRegionEdgeLog2);
             continue;
         }
-        for (std::uint32_t c = 0; c < static_cast<std::uint32_t>(kRegionCells); ++c) {
+        for (std::uint32_t c = 0; c < region->cellEnd(); ++c) {
             const VoxelRegion::Cell cell = region->cell(c);
             if (cell.material) count += kBrickVoxels;
             if (cell.brick == nullptr) continue;
@@ -178,7 +184,7 @@ VoxelBox VoxelModel::bounds() const {
             box.include({origin, origin + kRegionEdge});
             continue;
         }
-        for (std::uint32_t c = 0; c < static_cast<std::uint32_t>(kRegionCells); ++c) {
+        for (std::uint32_t c = 0; c < region->cellEnd(); ++c) {
             const VoxelRegion::Cell cell = region->cell(c);
             if (cell.empty()) continue;
             const glm::ivec3 corner = origin + glm::ivec3{mortonDecode(c)} * kBrickEdge;

@@ -72,7 +72,8 @@ TEST(HostileSvx, BrokenXmlNamesLineAndColumn) {
     ASSERT_FALSE(imported.result);
     EXPECT_EQ(imported.result.error().code, ErrorCode::BadStructure);
     EXPECT_THAT(imported.errorText(), testing::HasSubstr("manifest.xml line 3, column"));
-    EXPECT_THAT(importManifest("<grid gridSizeX=\"1\">\n").errorText(), testing::HasSubstr("line 1, column 21"));
+    EXPECT_THAT(importManifest("<grid gridSizeX=\"1\">\n").errorText(),
+                testing::HasSubstr("line 1, column 21"));
     EXPECT_THAT(importManifest("<svx/>").errorText(), testing::HasSubstr("<grid>"));
 }
 

@@ -25,6 +25,6 @@ inline std::vector<std::filesystem::path> corpusFiles(const std::string& part, c
 }  // namespace pfvox::test
 
 /// Skips the running test when a corpus file or folder is not there.
-#define PFVOX_NEEDS_CORPUS(relative)                                                                      \
-    if (!std::filesystem::exists(std::filesystem::path(PFVOX_CORPUS_DIR) / (relative)))                   \
+#define PFVOX_NEEDS_CORPUS(relative)                                                    \
+    if (!std::filesystem::exists(std::filesystem::path(PFVOX_CORPUS_DIR) / (relative))) \
     GTEST_SKIP() << "corpus file absent: " << (relative) << " (set PFVOX_CORPUS_DIR to the corpus folder)"

@@ -111,7 +111,7 @@ TEST(ImportLegacy, ConvertsMaterials) {
     EXPECT_EQ(materials[1].type, MaterialType::Metal);
     EXPECT_EQ(materials[1].roughness, 0.25f);
     EXPECT_EQ(materials[1].indexOfRefraction, 1.5f);
-    EXPECT_EQ(materials[2].transparency, 0.75f);
+    EXPECT_EQ(materials[2].transparency, 0.25f);
     EXPECT_EQ(materials[2].indexOfRefraction, 1.3f);
     EXPECT_FLOAT_EQ(materials[3].emissionStrength, 50.0f);
     EXPECT_EQ(materials[3].baseColor.r, 255);

@@ -1,5 +1,5 @@
-// PFVOX_ASSERT: a condition that only a fault of ours can break. On everywhere but in release builds; never used on
-// anything that a file can decide.
+// PFVOX_ASSERT: a condition that only a fault of ours can break. On everywhere but in release builds; never
+// used on anything that a file can decide.
 #pragma once
 
 namespace pfvox::detail {

@@ -1,7 +1,8 @@
-// Asset: what a source file or a PF_VOX file holds beside the voxels: materials, instances, layers, cameras and notes.
+// Asset: what a source file or a PF_VOX file holds beside the voxels: materials, instances, layers, cameras
+// and notes.
 //
-// Two types share it: VoxelAsset (pfvox/voxel_model.hpp), made by importers, and OctreeAsset (pfvox/octree.hpp), made by
-// the builder and by the PF_VOX decoder.
+// Two types share it: VoxelAsset (pfvox/voxel_model.hpp), made by importers, and OctreeAsset
+// (pfvox/octree.hpp), made by the builder and by the PF_VOX decoder.
 #pragma once
 
 #include <cstdint>
@@ -11,26 +12,34 @@
 
 namespace pfvox {
 
-enum class MaterialType : std::uint8_t { Diffuse = 0, Metal = 1, Glass = 2, Emit = 3, Plastic = 4, Blend = 5, Media = 6 };
+enum class MaterialType : std::uint8_t {
+    Diffuse = 0,
+    Metal = 1,
+    Glass = 2,
+    Emit = 3,
+    Plastic = 4,
+    Blend = 5,
+    Media = 6
+};
 
 /// The spelling used in reports and in scene files: "diffuse", "metal", ...
 const char* toString(MaterialType type);
 
-/// How a voxel meets light; the meaning of each field is in docs/materials.md. Defaults are those of a source that gives
-/// none. The PF_VOX file keeps the [0, 1] values as 16-bit fractions and the others as float32: quantised() gives what a
-/// round trip through a file gives.
+/// How a voxel meets light; the meaning of each field is in docs/materials.md. Defaults are those of a source
+/// that gives none. The PF_VOX file keeps the [0, 1] values as 16-bit fractions and the others as float32:
+/// quantised() gives what a round trip through a file gives.
 struct Material {
     glm::u8vec4 baseColor{255, 255, 255, 255};  ///< sRGB encoded; alpha is linear, 255 in nearly all sources
     MaterialType type = MaterialType::Diffuse;
-    float metalness = 0.0f;         ///< [0, 1]
-    float roughness = 1.0f;         ///< [0, 1]
-    float specular = 0.5f;          ///< [0, 1]
+    float metalness = 0.0f;          ///< [0, 1]
+    float roughness = 1.0f;          ///< [0, 1]
+    float specular = 0.5f;           ///< [0, 1]
     float indexOfRefraction = 1.5f;  ///< >= 1
-    float emissionStrength = 0.0f;  ///< radiance = linear base colour x strength
-    float transparency = 0.0f;      ///< [0, 1]
-    float density = 0.0f;           ///< of media, per voxel edge
-    float phase = 0.0f;             ///< Henyey-Greenstein g of media, [-1, 1]
-    std::string name;
+    float emissionStrength = 0.0f;   ///< radiance = linear base colour x strength
+    float transparency = 0.0f;       ///< [0, 1]
+    float density = 0.0f;            ///< of media, per voxel edge
+    float phase = 0.0f;              ///< Henyey-Greenstein g of media, [-1, 1]
+    std::string name = {};
 
     bool operator==(const Material&) const = default;
 };
@@ -39,22 +48,22 @@ Material quantised(const Material& material);
 
 /// One placement of a model. Mirrors (negative determinant) are allowed: MagicaVoxel files contain them.
 struct Instance {
-    std::uint32_t model = 0;                 ///< index into the asset's models
+    std::uint32_t model = 0;                   ///< index into the asset's models
     Affine worldFromModel = identityAffine();  ///< voxel units of the model to metres
-    std::string name;
-    std::int32_t layer = -1;                 ///< index into the asset's layers, -1 = none
+    std::string name = {};
+    std::int32_t layer = -1;  ///< index into the asset's layers, -1 = none
     bool hidden = false;
 };
 
 struct Layer {
-    std::string name;
+    std::string name = {};
     bool hidden = false;
     bool operator==(const Layer&) const = default;
 };
 
 /// A camera that the source file stored, in metres and degrees.
 struct Camera {
-    std::string name;
+    std::string name = {};
     glm::dvec3 position{0.0};
     glm::dvec3 target{0.0, 0.0, -1.0};
     double fovYDegrees = 45.0;

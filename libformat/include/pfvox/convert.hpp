@@ -12,14 +12,13 @@ namespace pfvox {
 
 struct ConvertSettings {
     ImportSettings import;
-    BuildSettings build;
     int zstdLevel = 3;
 };
 
 struct ConvertReport {
     std::uint64_t sourceBytes = 0;
     std::uint64_t outputBytes = 0;
-    std::uint64_t voxels = 0;      ///< of all models, each counted once
+    std::uint64_t voxels = 0;  ///< of all models, each counted once
     std::uint64_t nodes = 0;
     std::uint64_t leaves = 0;
     std::uint32_t models = 0;
@@ -34,15 +33,17 @@ struct ConvertReport {
 /// xxh3-128 of the source bytes, the settings and the versions of tool and format.
 ContentKey contentKey(std::span<const std::byte> source, const ConvertSettings& settings);
 
-/// Converts source bytes to PF_VOX bytes. `source` names the file for messages and decides nothing else but the
-/// extension. Errors: those of importBytes, buildOctrees and encodePfVox.
-Result<std::vector<std::byte>> convertBytes(std::span<const std::byte> bytes, const std::filesystem::path& source,
+/// Converts source bytes to PF_VOX bytes. `source` names the file for messages and decides nothing else but
+/// the extension. Errors: those of importBytes, buildOctrees and encodePfVox.
+Result<std::vector<std::byte>> convertBytes(std::span<const std::byte> bytes,
+                                            const std::filesystem::path& source,
                                             const ConvertSettings& settings, const Limits& limits,
                                             Diagnostics& diagnostics, ConvertReport& report);
 
-/// Converts one file. The output appears complete or not at all; on failure a previous output stays as it was.
-/// Errors: those of convertBytes, FileNotFound, FileNotReadable, FileNotWritable.
+/// Converts one file. The output appears complete or not at all; on failure a previous output stays as it
+/// was. Errors: those of convertBytes, FileNotFound, FileNotReadable, FileNotWritable.
 Result<ConvertReport> convertFile(const std::filesystem::path& source, const std::filesystem::path& output,
-                                  const ConvertSettings& settings, const Limits& limits, Diagnostics& diagnostics);
+                                  const ConvertSettings& settings, const Limits& limits,
+                                  Diagnostics& diagnostics);
 
 }  // namespace pfvox

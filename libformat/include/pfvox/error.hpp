@@ -2,7 +2,8 @@
 //
 // Three kinds of trouble, three ways (docs/architecture.md, "Errors"):
 //   1. wrong input or environment  -> Result<T> with an Error (this header);
-//   2. suspicious but usable input -> a Diagnostic sent to a Diagnostics sink; the tool prints or promotes it;
+//   2. suspicious but usable input -> a Diagnostic sent to a Diagnostics sink; the tool prints or promotes
+//   it;
 //   3. a fault of ours             -> PFVOX_ASSERT (pfvox/assert.hpp).
 // No exception crosses a public header of pfvox.
 #pragma once
@@ -18,8 +19,8 @@
 
 namespace pfvox {
 
-/// What kind of thing went wrong. The numbers are stable and listed in docs/cli.md; the hundreds select the exit
-/// code of the tools (1xx -> 3, 2xx -> 4, 3xx -> 5, 4xx -> 4, 5xx -> 6, 6xx -> 130, 9xx -> 70).
+/// What kind of thing went wrong. The numbers are stable and listed in docs/cli.md; the hundreds select the
+/// exit code of the tools (1xx -> 3, 2xx -> 4, 3xx -> 5, 4xx -> 4, 5xx -> 6, 6xx -> 130, 9xx -> 70).
 enum class ErrorCode : std::uint16_t {
     // Reading and writing
     FileNotFound = 100,
@@ -56,15 +57,16 @@ std::string_view toString(ErrorCode code);
 struct Error {
     ErrorCode code = ErrorCode::Internal;
     std::string message;
-    std::filesystem::path file = {};                        ///< the file at fault; empty while not known
+    std::filesystem::path file = {};                          ///< the file at fault; empty while not known
     std::optional<std::uint64_t> offsetBytes = std::nullopt;  ///< where in that file
-    std::string context = {};                               ///< the structure at that place, "chunk nTRN"
+    std::string context = {};                                 ///< the structure at that place, "chunk nTRN"
 };
 
 /// "hall.vox: chunk nTRN @0x1a3f: child node 77 does not exist".
 std::string describe(const Error& error);
 
-/// A value or an Error. A class of its own, because a plain alias of tl::expected is not [[nodiscard]] in GCC 12.
+/// A value or an Error. A class of its own, because a plain alias of tl::expected is not [[nodiscard]] in
+/// GCC 12.
 template <class T>
 class [[nodiscard]] Result : public tl::expected<T, Error> {
   public:
@@ -78,8 +80,8 @@ class [[nodiscard]] Result : public tl::expected<T, Error> {
 
 enum class Severity : std::uint8_t { Note, Warning };
 
-/// Something the user should know about input that is used all the same. `id` is stable ("vox-duplicate-voxels"),
-/// so that tools can count and tests can match; `message` is for people.
+/// Something the user should know about input that is used all the same. `id` is stable
+/// ("vox-duplicate-voxels"), so that tools can count and tests can match; `message` is for people.
 struct Diagnostic {
     Severity severity = Severity::Warning;
     std::string id;
@@ -119,14 +121,14 @@ class DiagnosticList final : public Diagnostics {
 /// `auto header` with the value.
 #define PFVOX_TRY(type, name, ...) PFVOX_TRY_IMPL(type, name, __LINE__, __VA_ARGS__)
 #define PFVOX_TRY_IMPL(type, name, line, ...) PFVOX_TRY_IMPL2(type, name, line, __VA_ARGS__)
-#define PFVOX_TRY_IMPL2(type, name, line, ...)                                       \
-    auto pfvoxResult##line = (__VA_ARGS__);                                          \
+#define PFVOX_TRY_IMPL2(type, name, line, ...)                                                \
+    auto pfvoxResult##line = (__VA_ARGS__);                                                   \
     if (!pfvoxResult##line) return tl::make_unexpected(std::move(pfvoxResult##line).error()); \
     type name = *std::move(pfvoxResult##line)
 
 /// The same for a Result<void>.
-#define PFVOX_CHECK(...)                                                                              \
-    do {                                                                                              \
-        auto pfvoxStatus = (__VA_ARGS__);                                                             \
-        if (!pfvoxStatus) return tl::make_unexpected(std::move(pfvoxStatus).error());                 \
+#define PFVOX_CHECK(...)                                                              \
+    do {                                                                              \
+        auto pfvoxStatus = (__VA_ARGS__);                                             \
+        if (!pfvoxStatus) return tl::make_unexpected(std::move(pfvoxStatus).error()); \
     } while (false)

@@ -2,8 +2,8 @@
 //
 //     [source file -> importer -> VoxelAsset] -> octree builder -> ...
 //
-// The format is found by content first and by file name second. Importers rotate into the frame of pfvox (right-handed,
-// +Y up) and never mirror; source-specific facts are in docs/import.md.
+// The format is found by content first and by file name second. Importers rotate into the frame of pfvox
+// (right-handed, +Y up) and never mirror; source-specific facts are in docs/import.md.
 #pragma once
 
 #include <cstdint>
@@ -57,6 +57,9 @@ struct ImportSettings {
     bool operator==(const ImportSettings&) const = default;
 };
 
+/// The settings as text, one spelling for one meaning: what the content key hashes.
+std::string canonicalText(const ImportSettings& settings);
+
 inline constexpr double kDefaultVoxelSizeMetres = 0.1;
 
 /// A source format that pfvox reads.
@@ -73,13 +76,15 @@ std::span<const SourceFormat> sourceFormats();
 bool looksLikeSource(const std::filesystem::path& file);
 
 /// Imports bytes already in memory. `file` is used for the extension and for messages only.
-/// Errors: UnsupportedFormat with what the file really is where that is known (Git LFS pointer, SLAB6, ...), Truncated,
-/// BadValue, BadReference, BadStructure, UnsupportedFeature, LimitExceeded, NothingToConvert.
+/// Errors: UnsupportedFormat with what the file really is where that is known (Git LFS pointer, SLAB6, ...),
+/// Truncated, BadValue, BadReference, BadStructure, UnsupportedFeature, LimitExceeded, NothingToConvert.
 Result<VoxelAsset> importBytes(std::span<const std::byte> bytes, const std::filesystem::path& file,
-                               const ImportSettings& settings, const Limits& limits, Diagnostics& diagnostics);
+                               const ImportSettings& settings, const Limits& limits,
+                               Diagnostics& diagnostics);
 
-/// Reads the file and imports it. Further errors: FileNotFound, FileNotReadable, LimitExceeded (maxFileBytes).
-Result<VoxelAsset> importFile(const std::filesystem::path& file, const ImportSettings& settings, const Limits& limits,
-                              Diagnostics& diagnostics);
+/// Reads the file and imports it. Further errors: FileNotFound, FileNotReadable, LimitExceeded
+/// (maxFileBytes).
+Result<VoxelAsset> importFile(const std::filesystem::path& file, const ImportSettings& settings,
+                              const Limits& limits, Diagnostics& diagnostics);
 
 }  // namespace pfvox

@@ -1,7 +1,7 @@
 // Vectors, boxes and transforms, shared by every stage. GLM does the arithmetic; this header gives the names.
 //
-// Frame of all pfvox data: right-handed, +Y up, as in glTF. Voxel (x, y, z) of a model fills the unit cube from
-// (x, y, z) to (x + 1, y + 1, z + 1).
+// Frame of all pfvox data: right-handed, +Y up, as in glTF. Voxel (x, y, z) of a model fills the unit cube
+// from (x, y, z) to (x + 1, y + 1, z + 1).
 #pragma once
 
 #include <cstdint>
@@ -29,15 +29,17 @@ struct VoxelBox {
 /// Names say the spaces: worldFromModel * vec4(pModel, 1) = pWorld.
 using Affine = glm::dmat4x3;
 
-inline Affine identityAffine() { return Affine{1.0}; }
+inline Affine identityAffine() {
+    return Affine{1.0};
+}
 
 /// a after b: (aFromB, bFromC) -> aFromC.
 inline Affine compose(const Affine& aFromB, const Affine& bFromC) {
     return Affine{glm::dmat4{aFromB} * glm::dmat4{bFromC}};
 }
 
-/// Interleaves the low 10 bits of x, y and z: bit 3i of the result is bit i of x, then y, then z. This is the order of
-/// octree child slots: slot = x + 2y + 4z.
+/// Interleaves the low 10 bits of x, y and z: bit 3i of the result is bit i of x, then y, then z. This is the
+/// order of octree child slots: slot = x + 2y + 4z.
 constexpr std::uint32_t mortonEncode(glm::uvec3 p) {
     constexpr auto spread = [](std::uint32_t v) {
         v &= 0x3ffu;

@@ -1,5 +1,5 @@
-// Octree: the sparse voxel octree of Laine and Karras ("Efficient Sparse Voxel Octrees", 2010) with 32-bit child
-// descriptors, as it lies in memory and on the GPU.
+// Octree: the sparse voxel octree of Laine and Karras ("Efficient Sparse Voxel Octrees", 2010) with 32-bit
+// child descriptors, as it lies in memory and on the GPU.
 //
 //     VoxelAsset -> [buildOctrees] -> OctreeAsset -> PF_VOX encoder
 //     PF_VOX decoder -> [OctreeAsset] -> GPU scene, reference ray caster, export
@@ -8,17 +8,19 @@
 //     bits  0-7   leaf mask    child slot k is a leaf (a subset of valid)
 //     bits  8-15  valid mask   child slot k exists
 //     bit   16    far          the pointer is an index into the far table
-//     bits 17-31  pointer      first inner child, in nodes, relative to this node, always forward; the others follow
+//     bits 17-31  pointer      first inner child, in nodes, relative to this node, always forward; the others
+//     follow
 //                              in slot order; leaf children have no node
 // Slot k = x + 2y + 4z, each bit 1 for the upper half of its axis.
 //
 // Attribute lookup (one u32 beside every node):
 //     bits  0-7   mask     child slots that carry a value
 //     bits  8-31  pointer  index of the node's first value
-// A value is a palette index. It belongs to a leaf of any size, or to an inner child whose whole subtree has one
-// material ("hoisted"): the nodes below it carry none.
+// A value is a palette index. It belongs to a leaf of any size, or to an inner child whose whole subtree has
+// one material ("hoisted"): the nodes below it carry none.
 //
-// Nodes are in depth-first order of sibling blocks: the block of a node's inner children, then each child's subtree.
+// Nodes are in depth-first order of sibling blocks: the block of a node's inner children, then each child's
+// subtree.
 #pragma once
 
 #include <cstdint>
@@ -36,17 +38,28 @@ inline constexpr std::uint32_t kFarBit = 1u << 16;
 inline constexpr std::uint32_t kPointerShift = 17;
 inline constexpr std::uint32_t kMaxNearPointer = (1u << 15) - 1;
 
-constexpr std::uint32_t leafMask(std::uint32_t descriptor) { return descriptor & 0xffu; }
-constexpr std::uint32_t validMask(std::uint32_t descriptor) { return (descriptor >> 8) & 0xffu; }
-constexpr std::uint32_t innerMask(std::uint32_t descriptor) { return validMask(descriptor) & ~leafMask(descriptor); }
-constexpr bool isFar(std::uint32_t descriptor) { return (descriptor & kFarBit) != 0; }
-constexpr std::uint32_t pointer(std::uint32_t descriptor) { return descriptor >> kPointerShift; }
+constexpr std::uint32_t leafMask(std::uint32_t descriptor) {
+    return descriptor & 0xffu;
+}
+constexpr std::uint32_t validMask(std::uint32_t descriptor) {
+    return (descriptor >> 8) & 0xffu;
+}
+constexpr std::uint32_t innerMask(std::uint32_t descriptor) {
+    return validMask(descriptor) & ~leafMask(descriptor);
+}
+constexpr bool isFar(std::uint32_t descriptor) {
+    return (descriptor & kFarBit) != 0;
+}
+constexpr std::uint32_t pointer(std::uint32_t descriptor) {
+    return descriptor >> kPointerShift;
+}
 }  // namespace node
 
 /// A tree of child descriptors. Node 0 is the root, a cube of edge 2^depth.
 struct NodeTree {
-    std::uint32_t depth = 0;             ///< levels below the root; a leaf at level depth has edge 1
-    std::vector<std::uint32_t> nodes;    ///< child descriptors; empty only in the top tree of a one-region model
+    std::uint32_t depth = 0;  ///< levels below the root; a leaf at level depth has edge 1
+    std::vector<std::uint32_t>
+        nodes;  ///< child descriptors; empty only in the top tree of a one-region model
     std::vector<std::uint32_t> farTable;  ///< distances in nodes, for descriptors with the far bit
 
     /// Index of the first inner child of node `index`. Precondition: the node has one.
@@ -60,23 +73,35 @@ struct NodeTree {
 struct OctreeRegion {
     glm::ivec3 originVoxels{0};  ///< lower corner in model voxels
     NodeTree tree;
-    std::vector<std::uint32_t> lookup;          ///< one word for each node
-    std::vector<std::uint16_t> values;          ///< palette indices
-    std::vector<MaterialIndex> palette;         ///< palette index -> material of the asset, ascending
+    std::vector<std::uint32_t> lookup;   ///< one word for each node
+    std::vector<std::uint8_t> values;    ///< palette indices of valueBytes() each, little endian
+    std::vector<MaterialIndex> palette;  ///< palette index -> material of the asset, ascending
     std::uint64_t voxelCount = 0;
-    VoxelBox bounds;                            ///< tight, in model voxels
+    VoxelBox bounds;  ///< tight, in model voxels
+
+    std::size_t valueBytes() const { return palette.size() <= 256 ? 1 : 2; }
+    std::size_t valueCount() const { return values.size() / valueBytes(); }
+    std::uint32_t value(std::size_t index) const {
+        return valueBytes() == 1
+                   ? values[index]
+                   : static_cast<std::uint32_t>(values[2 * index] | (values[2 * index + 1] << 8));
+    }
 };
 
-/// One model: a top tree whose leaves are regions, in node order then slot order. A model of at most 256^3 has an empty
-/// top tree and one region. An empty model has no region.
+/// One model: a top tree whose leaves are regions, in node order then slot order. A model of at most 256^3
+/// has an empty top tree and one region. An empty model has no region.
 struct OctreeModel {
     std::string name;
-    std::uint32_t depth = 0;      ///< levels in all; the octree cube has edge 2^depth
-    glm::ivec3 originVoxels{0};   ///< lower corner of the octree cube in model voxels
-    NodeTree topTree;             ///< depth = max(0, OctreeModel::depth - 8)
+    std::uint32_t depth = 0;                    ///< levels in all; the octree cube has edge 2^depth
+    glm::ivec3 originVoxels{0};                 ///< lower corner of the octree cube in model voxels
+    NodeTree topTree;                           ///< depth = max(0, OctreeModel::depth - 8)
+    std::vector<std::uint32_t> topFirstRegion;  ///< for each top node, the region of its first leaf slot
     std::vector<OctreeRegion> regions;
     std::uint64_t voxelCount = 0;
     VoxelBox bounds;
+
+    /// Makes topFirstRegion from topTree.
+    void indexRegions();
 
     /// The material at a voxel by descending from the root: the oracle of all other ways to read an octree.
     std::optional<MaterialIndex> at(glm::ivec3 voxel) const;
@@ -87,27 +112,24 @@ struct OctreeAsset : AssetInfo {
     std::vector<OctreeModel> models;
 };
 
-struct BuildSettings {
-    /// Worker threads are those of the calling TBB arena. The result does not depend on their number.
-    /// Reserved for options of the builder.
-};
-
 /// Builds the octrees of every model, exactly minimised: eight full children of one material become one leaf,
 /// recursively; no voxel changes its material. Materials, instances and the rest are taken over.
-/// Errors: LimitExceeded (depth, regions, materials).
-Result<OctreeAsset> buildOctrees(const VoxelAsset& asset, const BuildSettings& settings, const Limits& limits,
-                                 Diagnostics& diagnostics);
+/// Regions are built in parallel in the calling TBB arena; the result does not depend on the number of
+/// threads. Errors: LimitExceeded (depth, regions, materials), BadReference (a voxel's material does not
+/// exist).
+Result<OctreeAsset> buildOctrees(const VoxelAsset& asset, const Limits& limits);
 
 /// Every voxel of the octree back in a sparse grid; leaves larger than a voxel become tiles.
 VoxelModel toVoxelModel(const OctreeModel& model);
 
 struct OctreeStatistics {
     std::uint64_t voxels = 0;
-    std::uint64_t nodes = 0;       ///< child descriptors, top tree included
+    std::uint64_t nodes = 0;  ///< child descriptors, top tree included
     std::uint64_t leaves = 0;
     std::uint64_t values = 0;
     std::uint64_t farPointers = 0;
-    std::uint64_t gpuBytes = 0;    ///< nodes + lookup + far table (4 B each) + values (1 B, 2 B past 256 palette entries)
+    std::uint64_t gpuBytes =
+        0;  ///< nodes + lookup + far table (4 B each) + values (1 B, 2 B past 256 palette entries)
     std::vector<std::uint64_t> voxelsOfMaterial;  ///< by material index of the asset
 };
 OctreeStatistics statistics(const OctreeModel& model, std::size_t materialCount);

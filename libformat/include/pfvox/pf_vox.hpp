@@ -2,8 +2,8 @@
 //
 //     OctreeAsset -> [encodePfVox] -> bytes -> file -> bytes -> [decodePfVox] -> OctreeAsset
 //
-// Everything in a file is untrusted: counts are checked against the bytes present and against Limits before anything is
-// allocated, checksums are verified, and a broken file is refused with section and offset.
+// Everything in a file is untrusted: counts are checked against the bytes present and against Limits before
+// anything is allocated, checksums are verified, and a broken file is refused with section and offset.
 #pragma once
 
 #include <array>
@@ -29,26 +29,31 @@ struct ContentKey {
 };
 
 struct EncodeSettings {
-    int zstdLevel = 3;       ///< 1 to 19
-    ContentKey contentKey;   ///< kept in the header, for builds that skip what is up to date
+    int zstdLevel = 3;      ///< 1 to 19
+    ContentKey contentKey;  ///< kept in the header, for builds that skip what is up to date
 };
 
-/// The bytes of a PF_VOX file, packed profile. Equal input and settings give equal bytes for any number of threads.
-/// Errors: LimitExceeded when a count does not fit its field; BadReference when indices of the asset do not fit together.
+/// The bytes of a PF_VOX file, packed profile. Equal input and settings give equal bytes for any number of
+/// threads. Errors: LimitExceeded when a count does not fit its field; BadReference when indices of the asset
+/// do not fit together.
 Result<std::vector<std::byte>> encodePfVox(const OctreeAsset& asset, const EncodeSettings& settings);
 
 /// Reads a whole PF_VOX file. Regions are decoded in parallel in the calling TBB arena.
 /// Errors: BadMagic, UnsupportedVersion, UnsupportedFeature, Truncated, BadValue, BadReference, BadStructure,
 /// ChecksumMismatch, LimitExceeded; each with section and offset.
-Result<OctreeAsset> decodePfVox(std::span<const std::byte> bytes, const Limits& limits, Diagnostics& diagnostics);
+Result<OctreeAsset> decodePfVox(std::span<const std::byte> bytes, const Limits& limits,
+                                Diagnostics& diagnostics);
 
 /// decodePfVox on a file; errors name it. Further errors: FileNotFound, FileNotReadable.
-Result<OctreeAsset> loadPfVox(const std::filesystem::path& file, const Limits& limits, Diagnostics& diagnostics);
+Result<OctreeAsset> loadPfVox(const std::filesystem::path& file, const Limits& limits,
+                              Diagnostics& diagnostics);
+
+inline constexpr std::uint32_t kWholeFile = 0xffffffffu;
 
 /// One entry of the section table, for reports.
 struct PfVoxSection {
     std::string fourcc;
-    std::uint32_t regionId = 0;  ///< kNoRegion when the section belongs to the whole file
+    std::uint32_t regionId = 0;  ///< kWholeFile when the section belongs to the whole file
     std::string codec;           ///< "raw" or "zstd"
     std::uint64_t offsetBytes = 0;
     std::uint64_t storedBytes = 0;
@@ -65,13 +70,14 @@ struct PfVoxHeader {
     ContentKey contentKey;
     std::vector<PfVoxSection> sections;
 };
-Result<PfVoxHeader> readPfVoxHeader(std::span<const std::byte> bytes, const Limits& limits);
+/// Errors: BadMagic, Truncated, UnsupportedVersion, UnsupportedFeature, ChecksumMismatch, BadStructure.
+Result<PfVoxHeader> readPfVoxHeader(std::span<const std::byte> bytes);
 
-/// One thing that is wrong with a file. `id` is stable ("section-checksum"), see docs/cli.md.
+/// One thing that is wrong with a file. `id` is the stable spelling of an ErrorCode.
 struct Finding {
     std::string id;
-    std::string context;  ///< the section
-    std::uint64_t offsetBytes = 0;
+    std::string context;  ///< the section, empty when it is about the file as a whole
+    std::optional<std::uint64_t> offsetBytes;
     std::string message;
 };
 

@@ -2,10 +2,10 @@
 //
 //     source file -> importer -> [VoxelAsset] -> octree builder -> ...
 //
-// A model is a sparse set of regions of 256^3 voxels. A region is either one material throughout, or a table of 32^3
-// cells of 8^3 voxels, each empty, uniform, or a brick with its own occupancy mask. This maps one to one onto OpenVDB's
-// leaf nodes and tiles; other importers scatter voxels into it. Bits and materials of a brick are in Morton order, so
-// that the bytes of its mask are the child masks of the octree's lowest nodes.
+// A model is a sparse set of regions of 256^3 voxels. A region is either one material throughout, or a table
+// of 32^3 cells of 8^3 voxels, each empty, uniform, or a brick with its own occupancy mask. This maps one to
+// one onto OpenVDB's leaf nodes and tiles; other importers scatter voxels into it. Bits and materials of a
+// brick are in Morton order, so that the bytes of its mask are the child masks of the octree's lowest nodes.
 //
 // A VoxelModel is built by one thread; several threads may read it.
 #pragma once
@@ -31,8 +31,8 @@ inline constexpr int kRegionEdgeLog2 = 8;
 inline constexpr int kRegionEdge = 1 << kRegionEdgeLog2;
 inline constexpr int kRegionCells = 1 << (3 * (kRegionEdgeLog2 - kBrickEdgeLog2));
 
-/// 8^3 voxels. Bit m of the mask and material m belong to the voxel whose local coordinates interleave to Morton code m.
-/// Materials of empty voxels are unspecified.
+/// 8^3 voxels. Bit m of the mask and material m belong to the voxel whose local coordinates interleave to
+/// Morton code m. Materials of empty voxels are unspecified.
 struct Brick {
     std::array<std::uint64_t, 8> occupancy;
     std::array<MaterialIndex, kBrickVoxels> materials;
@@ -64,6 +64,12 @@ class VoxelRegion {
     };
     Cell cell(std::uint32_t cellMorton) const;
 
+    /// Cells with this Morton code and above hold nothing of their own: walks may stop here. Morton order puts a small
+    /// model in the low corner into the first few codes. kRegionCells for a uniform region.
+    std::uint32_t cellEnd() const {
+        return uniform_ ? static_cast<std::uint32_t>(kRegionCells) : static_cast<std::uint32_t>(table_.size());
+    }
+
     /// The brick at this cell for writing; an empty or uniform cell becomes a brick first.
     Brick& brickAt(std::uint32_t cellMorton);
     /// Makes the cell one solid cube, replacing what it held.
@@ -80,12 +86,14 @@ class VoxelRegion {
     static constexpr std::size_t kChunkBricks = 32;
 
     Brick& brick(std::uint32_t index) { return chunks_[index / kChunkBricks][index % kChunkBricks]; }
-    const Brick& brick(std::uint32_t index) const { return chunks_[index / kChunkBricks][index % kChunkBricks]; }
-    void makeTable();
+    const Brick& brick(std::uint32_t index) const {
+        return chunks_[index / kChunkBricks][index % kChunkBricks];
+    }
+    std::uint32_t& entryAt(std::uint32_t cellMorton);
 
     glm::ivec3 coord_;
     std::optional<MaterialIndex> uniform_;
-    std::vector<std::uint32_t> table_;  ///< kRegionCells entries once anything was written
+    std::vector<std::uint32_t> table_;  ///< by cell Morton code; a power of eight long, cells behind are empty
     std::vector<std::unique_ptr<Brick[]>> chunks_;
     std::size_t brickCount_ = 0;
 };
@@ -101,8 +109,8 @@ class VoxelModel {
     bool clear(glm::ivec3 voxel);
     /// The voxel's material, or nothing where it is empty.
     std::optional<MaterialIndex> at(glm::ivec3 voxel) const;
-    /// Fills the aligned cube [corner, corner + 2^edgeLog2)^3 without expanding it into voxels. `edgeLog2` is 3 to 15,
-    /// `corner` a multiple of the edge. This is how OpenVDB tiles come in.
+    /// Fills the aligned cube [corner, corner + 2^edgeLog2)^3 without expanding it into voxels. `edgeLog2` is
+    /// 3 to 15, `corner` a multiple of the edge. This is how OpenVDB tiles come in.
     void fillTile(glm::ivec3 corner, int edgeLog2, MaterialIndex material);
 
     /// The region that holds this region coordinate, made when absent.
@@ -131,8 +139,8 @@ struct VoxelAsset : AssetInfo {
     std::vector<VoxelModel> models;
 };
 
-/// Drops materials that no voxel uses and makes equal ones one, in the order of their first index. Voxels, bricks and
-/// tiles are renumbered. Afterwards materials are compared as a file keeps them (see quantised()).
+/// Drops materials that no voxel uses and makes equal ones one, in the order of their first index. Voxels,
+/// bricks and tiles are renumbered. Afterwards materials are compared as a file keeps them (see quantised()).
 void compactMaterials(VoxelAsset& asset);
 
 }  // namespace pfvox

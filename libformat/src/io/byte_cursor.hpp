@@ -1,4 +1,5 @@
-// ByteCursor: reads little-endian values from untrusted bytes. Every read is checked; nothing is read past the end.
+// ByteCursor: reads little-endian values from untrusted bytes. Every read is checked; nothing is read past
+// the end.
 #pragma once
 
 #include <bit>
@@ -25,8 +26,7 @@ class ByteCursor {
 
     /// The next value, or nothing when fewer bytes are left; then the cursor stays.
     template <class T>
-        requires std::is_trivially_copyable_v<T>
-    std::optional<T> read() {
+    requires std::is_trivially_copyable_v<T> std::optional<T> read() {
         if (remaining() < sizeof(T)) return std::nullopt;
         T value;
         std::memcpy(&value, bytes_.data() + position_, sizeof(T));

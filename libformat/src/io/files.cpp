@@ -35,9 +35,11 @@ class Descriptor {
     int fd_;
 };
 
-tl::unexpected<Error> systemError(ErrorCode code, const std::filesystem::path& file, std::string_view action) {
+tl::unexpected<Error> systemError(ErrorCode code, const std::filesystem::path& file,
+                                  std::string_view action) {
     const std::string reason = std::generic_category().message(errno);
-    return tl::make_unexpected(Error{.code = code, .message = fmt::format("{}: {}", action, reason), .file = file});
+    return tl::make_unexpected(
+        Error{.code = code, .message = fmt::format("{}: {}", action, reason), .file = file});
 }
 
 bool writeAll(int fd, std::span<const std::byte> bytes) {
@@ -55,7 +57,8 @@ bool writeAll(int fd, std::span<const std::byte> bytes) {
 }  // namespace
 
 Result<FileBytes> readFile(const std::filesystem::path& file, std::uint64_t maxBytes) {
-    const Descriptor fd(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
+    // Without O_NONBLOCK, opening a pipe would wait for a writer, perhaps for ever.
+    const Descriptor fd(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
     if (!fd.valid()) {
         return errno == ENOENT ? systemError(ErrorCode::FileNotFound, file, "cannot open")
                                : systemError(ErrorCode::FileNotReadable, file, "cannot open");
@@ -63,15 +66,17 @@ Result<FileBytes> readFile(const std::filesystem::path& file, std::uint64_t maxB
     struct stat info {};
     if (::fstat(fd.get(), &info) != 0) return systemError(ErrorCode::FileNotReadable, file, "cannot stat");
     if (!S_ISREG(info.st_mode)) {
-        return tl::make_unexpected(Error{.code = ErrorCode::FileNotReadable,
-                                         .message = S_ISDIR(info.st_mode) ? "is a folder" : "is not a regular file",
-                                         .file = file});
+        return tl::make_unexpected(
+            Error{.code = ErrorCode::FileNotReadable,
+                  .message = S_ISDIR(info.st_mode) ? "is a folder" : "is not a regular file",
+                  .file = file});
     }
     const auto size = static_cast<std::uint64_t>(info.st_size);
     if (size > maxBytes) {
-        return tl::make_unexpected(Error{.code = ErrorCode::LimitExceeded,
-                                         .message = fmt::format("{} bytes, more than maxFileBytes = {}", size, maxBytes),
-                                         .file = file});
+        return tl::make_unexpected(
+            Error{.code = ErrorCode::LimitExceeded,
+                  .message = fmt::format("{} bytes, more than maxFileBytes = {}", size, maxBytes),
+                  .file = file});
     }
     FileBytes contents(size);
     std::size_t done = 0;
@@ -93,10 +98,11 @@ Result<void> writeFileAtomically(const std::filesystem::path& file, std::span<co
         std::error_code error;
         std::filesystem::create_directories(file.parent_path(), error);
         if (error) {
-            return tl::make_unexpected(Error{.code = ErrorCode::FileNotWritable,
-                                             .message = fmt::format("cannot create folder {}: {}",
-                                                                    file.parent_path().string(), error.message()),
-                                             .file = file});
+            return tl::make_unexpected(Error{
+                .code = ErrorCode::FileNotWritable,
+                .message =
+                    fmt::format("cannot create folder {}: {}", file.parent_path().string(), error.message()),
+                .file = file});
         }
     }
     if (std::error_code error; std::filesystem::is_directory(file, error)) {
@@ -118,7 +124,8 @@ Result<void> writeFileAtomically(const std::filesystem::path& file, std::span<co
     if (!writeAll(fd.get(), bytes)) return abandon("cannot write");
     if (::fsync(fd.get()) != 0) return abandon("cannot sync");
     if (!fd.close()) return abandon("cannot close");
-    if (::rename(temporary.c_str(), file.c_str()) != 0) return abandon("cannot rename the finished file into place");
+    if (::rename(temporary.c_str(), file.c_str()) != 0)
+        return abandon("cannot rename the finished file into place");
     return {};
 }
 

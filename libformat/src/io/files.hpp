@@ -1,36 +1,4 @@
-// Files: the only way in which libformat touches the disk.
-//
-// Sources are read whole into memory rather than mapped: a file that another program shortens while we read it gives an
-// error here, but a SIGBUS under a mapping (docs/decisions/002-read-not-map.md).
+// The public header holds the declarations; the tools use them too.
 #pragma once
 
-#include <cstddef>
-#include <filesystem>
-#include <memory>
-#include <pfvox/error.hpp>
-#include <span>
-
-namespace pfvox::io {
-
-/// Bytes of a file, not zeroed before they are read.
-class FileBytes {
-  public:
-    FileBytes() = default;
-    explicit FileBytes(std::size_t size) : data_(std::make_unique_for_overwrite<std::byte[]>(size)), size_(size) {}
-    std::span<std::byte> bytes() { return {data_.get(), size_}; }
-    std::span<const std::byte> bytes() const { return {data_.get(), size_}; }
-    void shrink(std::size_t size) { size_ = size; }
-
-  private:
-    std::unique_ptr<std::byte[]> data_;
-    std::size_t size_ = 0;
-};
-
-/// Reads a whole regular file. Errors, each with `file`: FileNotFound, FileNotReadable, LimitExceeded.
-Result<FileBytes> readFile(const std::filesystem::path& file, std::uint64_t maxBytes);
-
-/// Writes to a temporary name in the same folder, syncs and renames: `file` holds either all of `bytes` or what it held
-/// before. Creates missing parent folders. Errors: FileNotWritable.
-Result<void> writeFileAtomically(const std::filesystem::path& file, std::span<const std::byte> bytes);
-
-}  // namespace pfvox::io
+#include <pfvox/files.hpp>

@@ -14,7 +14,9 @@ struct Xxh3_128::State {
     ~State() { XXH3_freeState(xxh); }
 };
 
-std::uint64_t xxh3_64(std::span<const std::byte> bytes) { return XXH3_64bits(bytes.data(), bytes.size()); }
+std::uint64_t xxh3_64(std::span<const std::byte> bytes) {
+    return XXH3_64bits(bytes.data(), bytes.size());
+}
 
 Xxh3_128::Xxh3_128() : state_(std::make_unique<State>()) {}
 Xxh3_128::~Xxh3_128() = default;

@@ -36,14 +36,19 @@ class Converter {
         // A diffuse record holds zeros for all that MagicaVoxel did not ask about; our defaults stand for
         // "not asked".
         if (material.type == MaterialType::Diffuse) return material;
-        material.metalness = unit(source.metalness);
+        const bool metallic = material.type == MaterialType::Metal || material.type == MaterialType::Blend;
+        const bool clear = material.type == MaterialType::Glass || material.type == MaterialType::Blend ||
+                           material.type == MaterialType::Media;
+        if (metallic) material.metalness = unit(source.metalness);
         material.roughness = unit(source.roughness);
         material.specular = unit(source.specular);
         if (source.indexOfRefraction > kIndexOfRefractionAbsent) {
             material.indexOfRefraction = source.indexOfRefraction;
         }
-        material.transparency = transparency(source);
-        material.density = std::max(source.density, 0.0f);
+        if (clear) {
+            material.transparency = transparency(source);
+            material.density = std::max(source.density, 0.0f);
+        }
         if (material.type == MaterialType::Emit) {
             material.emissionStrength =
                 std::max(source.emission, 0.0f) * std::pow(10.0f, std::clamp(source.flux, 0.0f, 8.0f));
@@ -60,11 +65,10 @@ class Converter {
         return clamped;
     }
 
-    /// Older MagicaVoxel files keep the opacity of glass in `_alpha` and have no transparency.
+    /// As for .vox files: `_trans`, in older files `_alpha`.
     float transparency(const Material& source) {
         const float transparency = unit(source.transparency);
-        const float opacity = unit(source.alpha);
-        return transparency == 0.0f && opacity > 0.0f ? 1.0f - opacity : transparency;
+        return transparency == 0.0f ? unit(source.alpha) : transparency;
     }
 
     int clampedCount_ = 0;

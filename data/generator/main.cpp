@@ -1,0 +1,49 @@
+// pfvox-make-demo-data: writes the demo sources of data/. The outputs are committed; a test runs this program
+// and compares.
+
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+
+#include "courtyard.hpp"
+#include "models.hpp"
+
+namespace {
+
+using namespace pfvox::demo;
+
+void writeFile(const std::filesystem::path& file, const VoxScene& scene, const Palette& palette) {
+    const std::vector<std::uint8_t> bytes = writeVox(scene, palette);
+    std::ofstream stream(file, std::ios::binary);
+    for (const std::uint8_t byte : bytes) stream.put(static_cast<char>(byte));
+    stream.close();
+    if (!stream) throw std::runtime_error("cannot write " + file.string());
+    std::printf("%s: %zu models, %zu bytes\n", file.string().c_str(), scene.models.size(), bytes.size());
+}
+
+void writeAll(const std::filesystem::path& folder) {
+    std::filesystem::create_directories(folder);
+    const DemoPalette p;
+    writeFile(folder / "courtyard.vox", makeCourtyard(p), p.palette);
+    writeFile(folder / "tree.vox", {.models = {makeTree(p, 17)}, .nodes = {}, .layers = {}}, p.palette);
+    writeFile(folder / "lamp.vox", {.models = {makeLamp(p)}, .nodes = {}, .layers = {}}, p.palette);
+    writeFile(folder / "statue.vox", {.models = {makeStatue(p)}, .nodes = {}, .layers = {}}, p.palette);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    if (argc != 2) {
+        std::fputs("usage: pfvox-make-demo-data <folder>\n", stderr);
+        return 2;
+    }
+    try {
+        writeAll(argv[1]);
+    } catch (const std::exception& exception) {
+        std::fprintf(stderr, "error: %s\n", exception.what());
+        return 3;
+    }
+    return 0;
+}

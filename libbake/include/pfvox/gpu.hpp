@@ -1,0 +1,161 @@
+// Gpu: a thin floor of Vulkan 1.2 under everything that pfvox computes on a graphics card.
+//
+//     Device -> Buffer, Program -> run(dispatches) -> download
+//
+// It knows compute and nothing else: one queue, buffers reached by their device address, programs that take
+// everything through push constants (hence no descriptor sets), one timeline semaphore, time stamps. Windows
+// are the viewer's.
+//
+// Ownership: Device, Buffer and Program are movable handles; buffers and programs keep their device alive.
+// Threading: one thread at a time for a device and everything made from it; different devices are
+// independent. Errors: GpuUnavailable (no loader, no fitting device, a missing feature or layer),
+// GpuOutOfMemory, GpuLost. After GpuLost every later call on that device fails.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <memory>
+#include <pfvox/error.hpp>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace pfvox::gpu {
+
+namespace detail {
+class DeviceContext;
+struct BufferState;
+struct ProgramState;
+}  // namespace detail
+
+enum class DeviceKind : std::uint8_t { Discrete, Integrated, Virtual, Other, Software };
+
+/// The spelling used in reports: "discrete", "integrated", ...
+const char* toString(DeviceKind kind);
+
+struct DeviceInfo {
+    std::uint32_t index = 0;  ///< position in listDevices(); selects the device
+    std::string name;
+    DeviceKind kind = DeviceKind::Other;
+    std::string driver;  ///< driver name and version, as the driver spells them
+    std::uint32_t apiVersionMajor = 0;
+    std::uint32_t apiVersionMinor = 0;
+    std::uint64_t localMemoryBytes = 0;  ///< largest device-local heap
+    std::string missing;                 ///< what pfvox needs and the device lacks; empty = usable
+    bool usable() const { return missing.empty(); }
+};
+
+/// Every Vulkan device of the machine, usable or not. Errors: GpuUnavailable when there is no Vulkan loader
+/// or driver.
+Result<std::vector<DeviceInfo>> listDevices();
+
+struct DeviceOptions {
+    /// Empty: the first usable device, real ones before software. A number: the index in listDevices(). Else:
+    /// a part of the name, whatever its case.
+    std::string selector;
+    /// Turns VK_LAYER_KHRONOS_validation on; its messages are collected, see Device::validationMessages().
+    bool validation = false;
+};
+
+/// Device memory reached by address. Its first content is unspecified.
+class Buffer {
+  public:
+    Buffer(Buffer&&) noexcept;
+    Buffer& operator=(Buffer&&) noexcept;
+    ~Buffer();
+
+    std::uint64_t sizeBytes() const;
+    /// What shaders see, low word first. A multiple of 256.
+    std::uint64_t address() const;
+    glm::uvec2 addressWords(std::uint64_t offsetBytes = 0) const {
+        const std::uint64_t a = address() + offsetBytes;
+        return {static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(a >> 32)};
+    }
+
+  private:
+    friend class Device;
+    explicit Buffer(std::unique_ptr<detail::BufferState> state);
+    std::unique_ptr<detail::BufferState> state_;
+};
+
+/// A compute shader with its pipeline. Its entry point is `main`.
+class Program {
+  public:
+    Program(Program&&) noexcept;
+    Program& operator=(Program&&) noexcept;
+    ~Program();
+
+  private:
+    friend class Device;
+    explicit Program(std::unique_ptr<detail::ProgramState> state);
+    std::unique_ptr<detail::ProgramState> state_;
+};
+
+/// One launch of a program. `pushConstants` has the size that the program was made with.
+struct Dispatch {
+    const Program* program = nullptr;
+    std::span<const std::byte> pushConstants;
+    glm::uvec3 groups{1};
+};
+
+/// The bytes of a push constant block.
+template <class T>
+std::span<const std::byte> bytesOf(const T& block) {
+    return std::as_bytes(std::span(&block, 1));
+}
+
+struct MemoryUse {
+    std::uint64_t currentBytes = 0;  ///< buffers and staging that exist now
+    std::uint64_t peakBytes = 0;
+};
+
+/// One opened GPU (or llvmpipe, which computes the same on the CPU).
+class Device {
+  public:
+    /// Errors: GpuUnavailable; the message names the devices that are there.
+    static Result<Device> open(const DeviceOptions& options);
+
+    Device(Device&&) noexcept;
+    Device& operator=(Device&&) noexcept;
+    ~Device();
+
+    const DeviceInfo& info() const;
+    MemoryUse memory() const;
+    /// The largest buffer that createBuffer can make.
+    std::uint64_t maxBufferBytes() const;
+
+    /// Makes a buffer of at least one byte in device memory. `name` appears in validation messages.
+    Result<Buffer> createBuffer(std::uint64_t sizeBytes, std::string_view name);
+
+    /// Compiles a SPIR-V module whose only input is a push constant block of `pushConstantBytes` (at most
+    /// 128).
+    Result<Program> createProgram(std::span<const std::uint32_t> spirv, std::uint32_t pushConstantBytes,
+                                  std::string_view name);
+
+    /// Room of `sizeBytes` (a multiple of 4) to be filled by the caller; its content goes to `target` at
+    /// `offsetBytes` (a multiple of 4) with the next run(), download() or flush(). The room is valid until
+    /// the next call on this device.
+    Result<std::span<std::byte>> stage(const Buffer& target, std::uint64_t offsetBytes,
+                                       std::uint64_t sizeBytes);
+    /// stage() and copy, in pieces where needed.
+    Result<void> upload(const Buffer& target, std::uint64_t offsetBytes, std::span<const std::byte> bytes);
+    /// Carries out the copies that are still waiting.
+    Result<void> flush();
+    /// Copies a part of a buffer to the caller; offset and size are multiples of 4.
+    Result<void> download(const Buffer& source, std::uint64_t offsetBytes, std::span<std::byte> bytes);
+
+    /// Launches the programs one after the other, each seeing what those before wrote, and waits. Returns the
+    /// time that the device spent, in milliseconds; 0 where it has no time stamps.
+    Result<double> run(std::span<const Dispatch> dispatches);
+
+    /// What the validation layer has said so far, each message once an occurrence. Empty is how it should be.
+    std::vector<std::string> validationMessages() const;
+
+  private:
+    explicit Device(std::shared_ptr<detail::DeviceContext> context);
+    std::shared_ptr<detail::DeviceContext> context_;
+};
+
+}  // namespace pfvox::gpu

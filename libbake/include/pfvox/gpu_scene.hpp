@@ -1,0 +1,73 @@
+// GpuScene: the voxels of one or more assets in device memory, ready for ray casting.
+//
+//     OctreeAsset(s) -> [Scene::build] -> device buffers -> shaders/octree_trace.glsl
+//
+// The layout is that of shaders/shared/scene.glsl.h: a BVH over the instances, the models' top trees, and one
+// contiguous block for each 256^3 region. World units are metres, right-handed, +Y up.
+#pragma once
+
+#include <pfvox/error.hpp>
+#include <pfvox/gpu.hpp>
+#include <pfvox/math.hpp>
+#include <pfvox/octree.hpp>
+#include <span>
+#include <vector>
+
+namespace pfvox::gpu {
+
+/// One asset and where it stands. All its visible instances take part.
+struct ScenePart {
+    const OctreeAsset* asset = nullptr;
+    Affine worldFromAsset = identityAffine();
+};
+
+/// A box in the world, in metres. Empty when min > max.
+struct WorldBox {
+    glm::dvec3 min{std::numeric_limits<double>::infinity()};
+    glm::dvec3 max{-std::numeric_limits<double>::infinity()};
+    bool empty() const { return min.x > max.x || min.y > max.y || min.z > max.z; }
+};
+
+/// What the scene consists of and where its bytes are.
+struct SceneStatistics {
+    std::uint32_t models = 0;     ///< that a visible instance uses
+    std::uint32_t instances = 0;  ///< visible
+    std::uint32_t regions = 0;
+    std::uint32_t materials = 0;
+    std::uint32_t bvhNodes = 0;
+    std::uint64_t voxels = 0;     ///< of the models, each counted once
+    std::uint64_t nodeBytes = 0;  ///< child descriptors, top trees included
+    std::uint64_t lookupBytes = 0;
+    std::uint64_t valueBytes = 0;
+    std::uint64_t otherBytes = 0;     ///< far tables, palettes, block headers, region addresses
+    std::uint64_t instanceBytes = 0;  ///< instances, models, materials, BVH
+    double buildMs = 0.0;             ///< CPU time of layout, BVH and upload
+    std::uint64_t totalBytes() const {
+        return nodeBytes + lookupBytes + valueBytes + otherBytes + instanceBytes;
+    }
+};
+
+/// Immutable once built. Keeps its device alive; does not keep the assets.
+class Scene {
+  public:
+    /// Lays the parts out and uploads them. Instances that are hidden, lie on a hidden layer or hold an empty
+    /// model are left out; one whose transform cannot be inverted too, with the diagnostic
+    /// "scene-flat-instance". Errors: BadReference (instance of a model that does not exist),
+    /// UnsupportedFeature (octree deeper than 23 levels), GpuOutOfMemory, GpuLost.
+    static Result<Scene> build(Device& device, std::span<const ScenePart> parts, Diagnostics& diagnostics);
+
+    /// Device address of the shared::SceneHeader.
+    glm::uvec2 address() const { return table_.addressWords(); }
+    const WorldBox& bounds() const { return bounds_; }
+    const SceneStatistics& statistics() const { return statistics_; }
+
+  private:
+    Scene(Buffer table, std::vector<Buffer> blocks) : table_(std::move(table)), blocks_(std::move(blocks)) {}
+
+    Buffer table_;                ///< header, BVH, instances, models, materials
+    std::vector<Buffer> blocks_;  ///< regions and top trees
+    WorldBox bounds_;
+    SceneStatistics statistics_;
+};
+
+}  // namespace pfvox::gpu

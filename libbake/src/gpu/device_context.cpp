@@ -1,0 +1,217 @@
+#include "gpu/device_context.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+namespace pfvox::gpu::detail {
+
+namespace {
+
+constexpr std::uint64_t kAddressAlignment = 256;
+constexpr std::uint64_t kMaxU64 = std::numeric_limits<std::uint64_t>::max();
+
+std::uint64_t largestBuffer(const vk::raii::PhysicalDevice& device) {
+    const auto chain =
+        device.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceVulkan11Properties>();
+    return chain.get<vk::PhysicalDeviceVulkan11Properties>().maxMemoryAllocationSize / kAddressAlignment *
+           kAddressAlignment;
+}
+
+/// Everything before is visible to everything after: copies and dispatches are few and large, finer barriers
+/// gain nothing.
+void fullBarrier(const vk::raii::CommandBuffer& commands) {
+    const vk::MemoryBarrier all{
+        .srcAccessMask = vk::AccessFlagBits::eMemoryWrite,
+        .dstAccessMask = vk::AccessFlagBits::eMemoryRead | vk::AccessFlagBits::eMemoryWrite};
+    commands.pipelineBarrier(vk::PipelineStageFlagBits::eAllCommands, vk::PipelineStageFlagBits::eAllCommands,
+                             {}, all, nullptr, nullptr);
+}
+
+}  // namespace
+
+BufferState::~BufferState() {
+    device->account(0, allocation.sizeBytes);
+}
+
+Result<std::shared_ptr<DeviceContext>> DeviceContext::open(const DeviceOptions& options) {
+    PFVOX_TRY(Instance, instance, createInstance(options.validation));
+    PFVOX_TRY(std::vector<FoundDevice>, devices, findDevices(instance));
+    PFVOX_TRY(const std::size_t, chosen, selectDevice(devices, options.selector));
+    return guarded("cannot open device '" + devices[chosen].info.name + "'", [&] {
+        return std::make_shared<DeviceContext>(std::move(instance), std::move(devices[chosen]));
+    });
+}
+
+DeviceContext::DeviceContext(Instance instance, FoundDevice found)
+    : instance_(std::move(instance)), found_(std::move(found)) {
+    createDevice();
+    queue_ = device_.getQueue(found_.queueFamily, 0);
+    commandPool_ =
+        vk::raii::CommandPool(device_, {.flags = vk::CommandPoolCreateFlagBits::eResetCommandBuffer,
+                                        .queueFamilyIndex = found_.queueFamily});
+    commands_ = std::move(vk::raii::CommandBuffers(device_, {.commandPool = *commandPool_,
+                                                             .level = vk::CommandBufferLevel::ePrimary,
+                                                             .commandBufferCount = 1})[0]);
+    const vk::SemaphoreTypeCreateInfo timeline{.semaphoreType = vk::SemaphoreType::eTimeline,
+                                               .initialValue = 0};
+    timeline_ = vk::raii::Semaphore(device_, vk::SemaphoreCreateInfo{.pNext = &timeline});
+    timeStamps_ = vk::raii::QueryPool(device_, {.queryType = vk::QueryType::eTimestamp, .queryCount = 2});
+    timeStampBits_ = found_.physical.getQueueFamilyProperties()[found_.queueFamily].timestampValidBits;
+    if (timeStampBits_ != 0) {
+        timeStampNs_ = static_cast<double>(found_.physical.getProperties().limits.timestampPeriod);
+    }
+    maxBufferBytes_ = largestBuffer(found_.physical);
+}
+
+void DeviceContext::createDevice() {
+    const float priority = 1.0f;
+    const vk::DeviceQueueCreateInfo queue{
+        .queueFamilyIndex = found_.queueFamily, .queueCount = 1, .pQueuePriorities = &priority};
+    const vk::PhysicalDeviceVulkan12Features features{.timelineSemaphore = true, .bufferDeviceAddress = true};
+    device_ = vk::raii::Device(
+        found_.physical,
+        vk::DeviceCreateInfo{.pNext = &features, .queueCreateInfoCount = 1, .pQueueCreateInfos = &queue});
+}
+
+std::uint32_t DeviceContext::memoryType(std::uint32_t allowed, MemoryKind kind) const {
+    using enum vk::MemoryPropertyFlagBits;
+    const vk::MemoryPropertyFlags shared = eHostVisible | eHostCoherent;
+    // Best first. Downloads read staging memory, which is slow where it is not cached.
+    const std::array<vk::MemoryPropertyFlags, 2> wanted =
+        kind == MemoryKind::Device
+            ? std::array<vk::MemoryPropertyFlags, 2>{eDeviceLocal, vk::MemoryPropertyFlags{}}
+            : std::array<vk::MemoryPropertyFlags, 2>{shared | eHostCached, shared};
+    const vk::PhysicalDeviceMemoryProperties memory = found_.physical.getMemoryProperties();
+    for (const vk::MemoryPropertyFlags flags : wanted) {
+        for (std::uint32_t i = 0; i < memory.memoryTypeCount; ++i) {
+            if ((allowed >> i & 1u) != 0 && (memory.memoryTypes[i].propertyFlags & flags) == flags) return i;
+        }
+    }
+    throw vk::OutOfDeviceMemoryError("no fitting memory type");
+}
+
+Allocation DeviceContext::allocate(std::uint64_t sizeBytes, MemoryKind kind) {
+    Allocation made;
+    made.sizeBytes = (std::max<std::uint64_t>(sizeBytes, 1) + kAddressAlignment - 1) / kAddressAlignment *
+                     kAddressAlignment;
+    if (made.sizeBytes > maxBufferBytes_)
+        throw vk::OutOfDeviceMemoryError("larger than one allocation may be");
+    vk::BufferUsageFlags usage =
+        vk::BufferUsageFlagBits::eTransferSrc | vk::BufferUsageFlagBits::eTransferDst;
+    if (kind == MemoryKind::Device) {
+        usage |= vk::BufferUsageFlagBits::eStorageBuffer | vk::BufferUsageFlagBits::eShaderDeviceAddress;
+    }
+    made.buffer = vk::raii::Buffer(device_, {.size = made.sizeBytes, .usage = usage});
+    const vk::MemoryRequirements needs = made.buffer.getMemoryRequirements();
+    const vk::MemoryAllocateFlagsInfo flags{.flags = vk::MemoryAllocateFlagBits::eDeviceAddress};
+    vk::MemoryAllocateInfo info{.allocationSize = needs.size,
+                                .memoryTypeIndex = memoryType(needs.memoryTypeBits, kind)};
+    if (kind == MemoryKind::Device) info.pNext = &flags;
+    made.memory = vk::raii::DeviceMemory(device_, info);
+    made.buffer.bindMemory(*made.memory, 0);
+    if (kind == MemoryKind::Staging)
+        made.mapped = static_cast<std::byte*>(made.memory.mapMemory(0, made.sizeBytes));
+    account(made.sizeBytes, 0);
+    return made;
+}
+
+void DeviceContext::account(std::uint64_t addedBytes, std::uint64_t freedBytes) {
+    memory_.currentBytes += addedBytes;
+    memory_.currentBytes -= freedBytes;
+    memory_.peakBytes = std::max(memory_.peakBytes, memory_.currentBytes);
+}
+
+void DeviceContext::nameObject(vk::ObjectType type, std::uint64_t handle, const std::string& name) const {
+    if (!*instance_.messenger) return;  // the extension is on only with validation
+    device_.setDebugUtilsObjectNameEXT(
+        {.objectType = type, .objectHandle = handle, .pObjectName = name.c_str()});
+}
+
+double DeviceContext::submit(const std::function<void(const vk::raii::CommandBuffer&)>& record) {
+    commands_.reset();
+    commands_.begin({.flags = vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
+    for (const PendingCopy& copy : pendingCopies_)
+        commands_.copyBuffer(*staging_.buffer, copy.target, copy.region);
+    fullBarrier(commands_);
+    if (timeStampNs_ > 0.0) {
+        commands_.resetQueryPool(*timeStamps_, 0, 2);
+        commands_.writeTimestamp(vk::PipelineStageFlagBits::eBottomOfPipe, *timeStamps_, 0);
+    }
+    record(commands_);
+    if (timeStampNs_ > 0.0)
+        commands_.writeTimestamp(vk::PipelineStageFlagBits::eBottomOfPipe, *timeStamps_, 1);
+    commands_.end();
+
+    const std::uint64_t done = ++submissions_;
+    const vk::TimelineSemaphoreSubmitInfo timeline{.signalSemaphoreValueCount = 1,
+                                                   .pSignalSemaphoreValues = &done};
+    queue_.submit(vk::SubmitInfo{.pNext = &timeline,
+                                 .commandBufferCount = 1,
+                                 .pCommandBuffers = &*commands_,
+                                 .signalSemaphoreCount = 1,
+                                 .pSignalSemaphores = &*timeline_});
+    const vk::SemaphoreWaitInfo wait{.semaphoreCount = 1, .pSemaphores = &*timeline_, .pValues = &done};
+    if (device_.waitSemaphores(wait, kMaxU64) != vk::Result::eSuccess) {
+        throw vk::DeviceLostError("waiting for the device");
+    }
+    pendingCopies_.clear();
+    stagedBytes_ = 0;
+    return elapsedMs();
+}
+
+double DeviceContext::elapsedMs() const {
+    if (timeStampNs_ <= 0.0) return 0.0;
+    const auto [result, ticks] = timeStamps_.getResults<std::uint64_t>(
+        0, 2, 2 * sizeof(std::uint64_t), sizeof(std::uint64_t), vk::QueryResultFlagBits::e64);
+    if (result != vk::Result::eSuccess) return 0.0;
+    const std::uint64_t mask = timeStampBits_ >= 64 ? kMaxU64 : (std::uint64_t{1} << timeStampBits_) - 1;
+    return static_cast<double>((ticks[1] - ticks[0]) & mask) * timeStampNs_ * 1e-6;
+}
+
+void DeviceContext::ensureStaging(std::uint64_t sizeBytes) {
+    constexpr std::uint64_t kUsualStagingBytes = 32u << 20;
+    if (staging_.sizeBytes >= sizeBytes) return;
+    account(0, staging_.sizeBytes);
+    staging_ = {};
+    staging_ = allocate(std::max(sizeBytes, kUsualStagingBytes), MemoryKind::Staging);
+}
+
+std::span<std::byte> DeviceContext::stage(vk::Buffer target, std::uint64_t offsetBytes,
+                                          std::uint64_t sizeBytes) {
+    if (stagedBytes_ + sizeBytes > staging_.sizeBytes) {
+        flush();
+        ensureStaging(sizeBytes);
+    }
+    const std::uint64_t at = stagedBytes_;
+    pendingCopies_.push_back({target, {.srcOffset = at, .dstOffset = offsetBytes, .size = sizeBytes}});
+    stagedBytes_ += (sizeBytes + 15) / 16 * 16;
+    return {staging_.mapped + at, sizeBytes};
+}
+
+void DeviceContext::flush() {
+    if (pendingCopies_.empty()) return;
+    submit([](const vk::raii::CommandBuffer&) {});
+}
+
+void DeviceContext::download(vk::Buffer source, std::uint64_t offsetBytes, std::span<std::byte> bytes) {
+    flush();
+    constexpr std::uint64_t kPieceBytes = 32u << 20;
+    for (std::uint64_t done = 0; done < bytes.size();) {
+        const std::uint64_t piece = std::min<std::uint64_t>(kPieceBytes, bytes.size() - done);
+        ensureStaging(piece);
+        submit([&](const vk::raii::CommandBuffer& commands) {
+            commands.copyBuffer(
+                source, *staging_.buffer,
+                vk::BufferCopy{.srcOffset = offsetBytes + done, .dstOffset = 0, .size = piece});
+            const vk::MemoryBarrier toHost{.srcAccessMask = vk::AccessFlagBits::eTransferWrite,
+                                           .dstAccessMask = vk::AccessFlagBits::eHostRead};
+            commands.pipelineBarrier(vk::PipelineStageFlagBits::eTransfer, vk::PipelineStageFlagBits::eHost,
+                                     {}, toHost, nullptr, nullptr);
+        });
+        std::copy_n(staging_.mapped, piece, bytes.data() + done);
+        done += piece;
+    }
+}
+
+}  // namespace pfvox::gpu::detail

@@ -1,0 +1,96 @@
+// Everything that an opened device consists of. Shared by Device, Buffer and Program, so that it outlives
+// them.
+#pragma once
+
+#include <functional>
+#include <pfvox/gpu.hpp>
+
+#include "gpu/instance.hpp"
+#include "gpu/vulkan.hpp"
+
+namespace pfvox::gpu::detail {
+
+class DeviceContext;
+
+/// Memory and the buffer in it. `mapped` is null for device memory.
+struct Allocation {
+    vk::raii::DeviceMemory memory{nullptr};
+    vk::raii::Buffer buffer{nullptr};
+    std::uint64_t sizeBytes = 0;
+    std::byte* mapped = nullptr;
+};
+
+enum class MemoryKind : std::uint8_t { Device, Staging };
+
+struct BufferState {
+    std::shared_ptr<DeviceContext> device;
+    Allocation allocation;
+    std::uint64_t address = 0;
+
+    BufferState(std::shared_ptr<DeviceContext> owner, Allocation made, std::uint64_t where)
+        : device(std::move(owner)), allocation(std::move(made)), address(where) {}
+    BufferState(const BufferState&) = delete;
+    BufferState& operator=(const BufferState&) = delete;
+    ~BufferState();
+};
+
+struct ProgramState {
+    std::shared_ptr<DeviceContext> device;
+    vk::raii::PipelineLayout layout{nullptr};
+    vk::raii::Pipeline pipeline{nullptr};
+    std::uint32_t pushConstantBytes = 0;
+};
+
+class DeviceContext {
+  public:
+    static Result<std::shared_ptr<DeviceContext>> open(const DeviceOptions& options);
+    DeviceContext(Instance instance, FoundDevice found);
+
+    const DeviceInfo& info() const { return found_.info; }
+    const vk::raii::Device& device() const { return device_; }
+    std::uint64_t maxBufferBytes() const { return maxBufferBytes_; }
+    std::vector<std::string> validationMessages() const { return instance_.log->messages(); }
+    MemoryUse memory() const { return memory_; }
+
+    // These throw what Vulkan throws; callers are inside guarded().
+    Allocation allocate(std::uint64_t sizeBytes, MemoryKind kind);
+    void account(std::uint64_t addedBytes, std::uint64_t freedBytes);
+    void nameObject(vk::ObjectType type, std::uint64_t handle, const std::string& name) const;
+    /// Records commands, submits them and waits. Returns the milliseconds between the first and the last.
+    double submit(const std::function<void(const vk::raii::CommandBuffer&)>& record);
+
+    /// Copies that wait in the staging buffer for the next submission.
+    struct PendingCopy {
+        vk::Buffer target;
+        vk::BufferCopy region;
+    };
+    std::span<std::byte> stage(vk::Buffer target, std::uint64_t offsetBytes, std::uint64_t sizeBytes);
+    void flush();
+    void download(vk::Buffer source, std::uint64_t offsetBytes, std::span<std::byte> bytes);
+
+  private:
+    void createDevice();
+    void ensureStaging(std::uint64_t sizeBytes);
+    std::uint32_t memoryType(std::uint32_t allowed, MemoryKind kind) const;
+    double elapsedMs() const;
+
+    Instance instance_;
+    FoundDevice found_;
+    vk::raii::Device device_{nullptr};
+    vk::raii::Queue queue_{nullptr};
+    vk::raii::CommandPool commandPool_{nullptr};
+    vk::raii::CommandBuffer commands_{nullptr};
+    vk::raii::Semaphore timeline_{nullptr};
+    vk::raii::QueryPool timeStamps_{nullptr};
+    std::uint64_t submissions_ = 0;
+    std::uint64_t maxBufferBytes_ = 0;
+    double timeStampNs_ = 0.0;  ///< 0 = the queue has none
+    std::uint32_t timeStampBits_ = 0;
+    MemoryUse memory_;
+
+    Allocation staging_;
+    std::uint64_t stagedBytes_ = 0;
+    std::vector<PendingCopy> pendingCopies_;
+};
+
+}  // namespace pfvox::gpu::detail

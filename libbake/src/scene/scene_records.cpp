@@ -1,0 +1,175 @@
+#include "scene/scene_records.hpp"
+
+#include <fmt/format.h>
+#include <array>
+#include <cmath>
+#include <unordered_map>
+
+namespace pfvox::gpu::detail {
+
+namespace {
+
+double linearFromSrgb(std::uint8_t encoded) {
+    const double c = encoded / 255.0;
+    return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
+}
+
+shared::MaterialRecord recordOf(const Material& material) {
+    const glm::u8vec4 c = material.baseColor;
+    return {.albedo = glm::vec3(linearFromSrgb(c.r), linearFromSrgb(c.g), linearFromSrgb(c.b)),
+            .emissionStrength = material.emissionStrength,
+            .type = static_cast<std::uint32_t>(material.type),
+            .metalness = material.metalness,
+            .roughness = material.roughness,
+            .specular = material.specular,
+            .indexOfRefraction = material.indexOfRefraction,
+            .transparency = material.transparency,
+            .alpha = static_cast<float>(c.a) / 255.0f,
+            .reserved0 = 0};
+}
+
+/// Cube space of a model: its octree cube is [1, 2)^3.
+Affine voxelsFromCube(const OctreeModel& model) {
+    const double edge = std::ldexp(1.0, static_cast<int>(model.depth));
+    Affine m{edge};
+    m[3] = glm::dvec3(model.originVoxels) - edge;
+    return m;
+}
+
+/// Corners are transformed in double and rounded away from the box.
+Box worldBoxOf(const VoxelBox& voxels, const Affine& worldFromModel, WorldBox& exact) {
+    WorldBox box;
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::dvec3 p((corner & 1) != 0 ? voxels.max.x : voxels.min.x,
+                           (corner & 2) != 0 ? voxels.max.y : voxels.min.y,
+                           (corner & 4) != 0 ? voxels.max.z : voxels.min.z);
+        const glm::dvec3 world = worldFromModel * glm::dvec4(p, 1.0);
+        box.min = glm::min(box.min, world);
+        box.max = glm::max(box.max, world);
+    }
+    exact.min = glm::min(exact.min, box.min);
+    exact.max = glm::max(exact.max, box.max);
+    Box rounded;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double slack = 1e-6 * (std::abs(box.min[axis]) + std::abs(box.max[axis]));
+        rounded.min[axis] = static_cast<float>(box.min[axis] - slack);
+        rounded.max[axis] = static_cast<float>(box.max[axis] + slack);
+    }
+    return rounded;
+}
+
+class RecordMaker {
+  public:
+    RecordMaker(SceneRecords& records, Diagnostics& diagnostics)
+        : records_(records), diagnostics_(diagnostics) {}
+
+    Result<void> add(const ScenePart& part) {
+        const OctreeAsset& asset = *part.asset;
+        const auto firstMaterial = static_cast<std::uint32_t>(records_.materials.size());
+        for (const Material& material : asset.materials) records_.materials.push_back(recordOf(material));
+        for (const pfvox::Instance& instance : asset.instances) {
+            const std::uint32_t id = nextId_++;
+            if (instance.model >= asset.models.size()) {
+                return fail(ErrorCode::BadReference,
+                            fmt::format("instance '{}' is of model {}, but there are {} models",
+                                        instance.name, instance.model, asset.models.size()));
+            }
+            const OctreeModel& model = asset.models[instance.model];
+            if (isHidden(asset, instance) || model.regions.empty()) continue;
+            if (model.depth > shared::kOctreeStackSize) {
+                return fail(ErrorCode::UnsupportedFeature,
+                            fmt::format("model '{}' has {} octree levels; the GPU traversal has {}",
+                                        model.name, model.depth, shared::kOctreeStackSize));
+            }
+            addInstance(instance, part.worldFromAsset, {&model, firstMaterial}, id);
+        }
+        return {};
+    }
+
+    void finish() {
+        Bvh bvh = buildBvh(boxes_);
+        records_.bvhNodes = std::move(bvh.nodes);
+        for (const std::uint32_t i : bvh.order) records_.instances.push_back(unordered_[i]);
+    }
+
+  private:
+    static bool isHidden(const OctreeAsset& asset, const pfvox::Instance& instance) {
+        if (instance.hidden) return true;
+        const auto layer = static_cast<std::size_t>(instance.layer);
+        return instance.layer >= 0 && layer < asset.layers.size() && asset.layers[layer].hidden;
+    }
+
+    void addInstance(const pfvox::Instance& instance, const Affine& worldFromAsset, UsedModel used,
+                     std::uint32_t id) {
+        const Affine worldFromModel = compose(worldFromAsset, instance.worldFromModel);
+        const Affine worldFromCube = compose(worldFromModel, voxelsFromCube(*used.model));
+        const glm::dmat4 cubeFromWorld = glm::inverse(glm::dmat4(worldFromCube));
+        bool finite = true;
+        for (int column = 0; column < 4; ++column) {
+            for (int row = 0; row < 3; ++row) finite &= std::abs(cubeFromWorld[column][row]) < 1e30;
+        }
+        if (!finite) {
+            diagnostics_.warn(
+                "scene-flat-instance",
+                fmt::format("instance '{}' is left out: its transform cannot be inverted", instance.name));
+            return;
+        }
+        const auto row = [&](int r) {
+            return glm::vec4(cubeFromWorld[0][r], cubeFromWorld[1][r], cubeFromWorld[2][r],
+                             cubeFromWorld[3][r]);
+        };
+        unordered_.push_back({.cubeFromWorld0 = row(0),
+                              .cubeFromWorld1 = row(1),
+                              .cubeFromWorld2 = row(2),
+                              .model = modelIndex(used),
+                              .id = id,
+                              .reserved0 = 0,
+                              .reserved1 = 0});
+        boxes_.push_back(worldBoxOf(used.model->bounds, worldFromModel, records_.bounds));
+    }
+
+    std::uint32_t modelIndex(UsedModel used) {
+        const auto next = static_cast<std::uint32_t>(records_.models.size());
+        const auto [entry, added] = indexOf_.try_emplace(used.model, next);
+        if (added) records_.models.push_back(used);
+        return entry->second;
+    }
+
+    SceneRecords& records_;
+    Diagnostics& diagnostics_;
+    std::unordered_map<const OctreeModel*, std::uint32_t> indexOf_;
+    std::vector<shared::InstanceRecord> unordered_;
+    std::vector<Box> boxes_;
+    std::uint32_t nextId_ = 0;
+};
+
+}  // namespace
+
+Result<SceneRecords> makeRecords(std::span<const ScenePart> parts, Diagnostics& diagnostics) {
+    SceneRecords records;
+    RecordMaker maker(records, diagnostics);
+    for (const ScenePart& part : parts) PFVOX_CHECK(maker.add(part));
+    maker.finish();
+    return records;
+}
+
+shared::ModelRecord recordOf(const OctreeModel& model) {
+    // Corners of the box are whole voxels: exact in float for every depth that the traversal allows.
+    const double voxel = std::ldexp(1.0, -static_cast<int>(model.depth));
+    const auto cubeFromVoxel = [&](glm::ivec3 corner) {
+        return glm::vec3(1.0 + glm::dvec3(glm::i64vec3(corner) - glm::i64vec3(model.originVoxels)) * voxel);
+    };
+    // A node whose cells have scale s spans 2^(s - 22) of the cube. Only leaves above the regions' roots are
+    // regions.
+    const std::uint32_t rootScale = shared::kOctreeStackSize - 1;
+    return {.boxMin = cubeFromVoxel(model.bounds.min),
+            .depth = model.depth,
+            .boxMax = cubeFromVoxel(model.bounds.max),
+            .regionScale = rootScale - model.topTree.depth,
+            .rootBlock = {0, 0},
+            .reserved0 = {0, 0},
+            .originVoxels = model.originVoxels,
+            .reserved1 = 0};
+}
+
+}  // namespace pfvox::gpu::detail

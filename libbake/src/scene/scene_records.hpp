@@ -1,0 +1,33 @@
+// From assets to the records of shared/scene.glsl.h, on the CPU: which instances take part, their boxes and
+// matrices.
+#pragma once
+
+#include <pfvox/gpu_scene.hpp>
+#include <vector>
+
+#include "scene/bvh.hpp"
+#include "shared/scene.glsl.h"
+
+namespace pfvox::gpu::detail {
+
+/// A model that some visible instance uses.
+struct UsedModel {
+    const OctreeModel* model = nullptr;
+    std::uint32_t firstMaterial = 0;  ///< of its asset, in the scene's material list
+};
+
+struct SceneRecords {
+    std::vector<UsedModel> models;
+    std::vector<shared::InstanceRecord> instances;  ///< in BVH order
+    std::vector<shared::MaterialRecord> materials;
+    std::vector<shared::BvhNode> bvhNodes;
+    WorldBox bounds;
+};
+
+/// Errors and diagnostics: see Scene::build.
+Result<SceneRecords> makeRecords(std::span<const ScenePart> parts, Diagnostics& diagnostics);
+
+/// All of a model's record but the address of its root block.
+shared::ModelRecord recordOf(const OctreeModel& model);
+
+}  // namespace pfvox::gpu::detail

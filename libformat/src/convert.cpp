@@ -1,0 +1,99 @@
+#include <fmt/format.h>
+#include <chrono>
+#include <pfvox/convert.hpp>
+
+#include "io/files.hpp"
+#include "io/hash.hpp"
+
+namespace pfvox {
+
+namespace {
+
+/// Changes with every release that can change the bytes of an output.
+constexpr std::string_view kConverterVersion = PFVOX_VERSION;
+
+/// Seconds since the last call.
+class Stopwatch {
+  public:
+    double lap() {
+        const auto now = std::chrono::steady_clock::now();
+        const std::chrono::duration<double> passed = now - last_;
+        last_ = now;
+        return passed.count();
+    }
+
+  private:
+    std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+void count(const OctreeAsset& asset, ConvertReport& report) {
+    report.models = static_cast<std::uint32_t>(asset.models.size());
+    report.instances = static_cast<std::uint32_t>(asset.instances.size());
+    report.materials = static_cast<std::uint32_t>(asset.materials.size());
+    for (const OctreeModel& model : asset.models) {
+        report.voxels += model.voxelCount;
+        report.nodes += model.topTree.nodes.size();
+        for (const OctreeRegion& region : model.regions) {
+            report.nodes += region.tree.nodes.size();
+            for (const std::uint32_t d : region.tree.nodes) {
+                report.leaves += static_cast<std::uint64_t>(std::popcount(node::leafMask(d)));
+            }
+        }
+    }
+}
+
+Error withFile(Error error, const std::filesystem::path& file) {
+    if (error.file.empty()) error.file = file;
+    return error;
+}
+
+}  // namespace
+
+ContentKey contentKey(std::span<const std::byte> source, const ConvertSettings& settings) {
+    io::Xxh3_128 hash;
+    hash.update(kConverterVersion);
+    hash.update(
+        fmt::format("pf_vox {}.{} zstd {} ", kPfVoxVersionMajor, kPfVoxVersionMinor, settings.zstdLevel));
+    hash.update(canonicalText(settings.import));
+    hash.update(source);
+    return {hash.digest()};
+}
+
+Result<std::vector<std::byte>> convertBytes(std::span<const std::byte> bytes,
+                                            const std::filesystem::path& source,
+                                            const ConvertSettings& settings, const Limits& limits,
+                                            Diagnostics& diagnostics, ConvertReport& report) {
+    Stopwatch watch;
+    report.sourceBytes = bytes.size();
+    const auto built = [&]() -> Result<OctreeAsset> {
+        PFVOX_TRY(VoxelAsset, asset, importBytes(bytes, source, settings.import, limits, diagnostics));
+        compactMaterials(asset);
+        report.importSeconds = watch.lap();
+        return buildOctrees(asset, limits);
+    }();
+    if (!built) return tl::make_unexpected(withFile(built.error(), source));
+    count(*built, report);
+    report.buildSeconds = watch.lap();
+
+    const EncodeSettings encode{.zstdLevel = settings.zstdLevel, .contentKey = contentKey(bytes, settings)};
+    auto encoded = encodePfVox(*built, encode);
+    if (!encoded) return tl::make_unexpected(withFile(std::move(encoded).error(), source));
+    report.outputBytes = encoded->size();
+    report.encodeSeconds = watch.lap();
+    return encoded;
+}
+
+Result<ConvertReport> convertFile(const std::filesystem::path& source, const std::filesystem::path& output,
+                                  const ConvertSettings& settings, const Limits& limits,
+                                  Diagnostics& diagnostics) {
+    ConvertReport report;
+    PFVOX_TRY(const io::FileBytes, contents, io::readFile(source, limits.maxFileBytes));
+    PFVOX_TRY(const auto, encoded,
+              convertBytes(contents.bytes(), source, settings, limits, diagnostics, report));
+    Stopwatch watch;
+    PFVOX_CHECK(io::writeFileAtomically(output, encoded));
+    report.writeSeconds = watch.lap();
+    return report;
+}
+
+}  // namespace pfvox

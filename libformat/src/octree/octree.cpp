@@ -1,0 +1,152 @@
+#include <bit>
+#include <pfvox/assert.hpp>
+#include <pfvox/octree.hpp>
+
+namespace pfvox {
+
+namespace {
+
+/// Child slot of the point in the cube whose children have edge 2^childLog2, both relative to the cube's
+/// corner.
+std::uint32_t slotOf(glm::i64vec3 local, std::uint32_t childLog2) {
+    const auto bit = [&](std::int64_t c) { return static_cast<std::uint32_t>((c >> childLog2) & 1); };
+    return bit(local.x) | (bit(local.y) << 1) | (bit(local.z) << 2);
+}
+
+std::uint32_t countBelow(std::uint32_t mask, std::uint32_t slot) {
+    return static_cast<std::uint32_t>(std::popcount(mask & ((1u << slot) - 1)));
+}
+
+std::optional<std::uint32_t> regionIndexAt(const OctreeModel& model, glm::i64vec3 local) {
+    if (model.topTree.nodes.empty()) return 0;
+    std::uint32_t index = 0;
+    for (std::uint32_t level = model.topTree.depth; level-- > 0;) {
+        const std::uint32_t d = model.topTree.nodes[index];
+        const std::uint32_t slot = slotOf(local, level + kRegionEdgeLog2);
+        if (((node::validMask(d) >> slot) & 1u) == 0) return std::nullopt;
+        if (((node::leafMask(d) >> slot) & 1u) != 0) {
+            return model.topFirstRegion[index] + countBelow(node::leafMask(d), slot);
+        }
+        index = model.topTree.firstChild(index) + countBelow(node::innerMask(d), slot);
+    }
+    return std::nullopt;
+}
+
+std::optional<MaterialIndex> materialInRegion(const OctreeRegion& region, glm::i64vec3 local) {
+    std::uint32_t index = 0;
+    std::optional<std::uint32_t> value;  // of the nearest ancestor slot that carries one
+    for (std::uint32_t level = region.tree.depth; level-- > 0;) {
+        const std::uint32_t d = region.tree.nodes[index];
+        const std::uint32_t lookup = region.lookup[index];
+        const std::uint32_t slot = slotOf(local, level);
+        if (((node::validMask(d) >> slot) & 1u) == 0) return std::nullopt;
+        if (((lookup >> slot) & 1u) != 0) value = (lookup >> 8) + countBelow(lookup & 0xffu, slot);
+        if (((node::leafMask(d) >> slot) & 1u) != 0) {
+            PFVOX_ASSERT(value.has_value());
+            return region.palette[region.value(*value)];
+        }
+        index = region.tree.firstChild(index) + countBelow(node::innerMask(d), slot);
+    }
+    return std::nullopt;
+}
+
+/// Calls visit(cornerInRegion, edgeLog2, material) for every leaf below a node.
+template <class Visit>
+void forEachLeaf(const OctreeRegion& region, const Visit& visit) {
+    struct Frame {
+        std::uint32_t index;
+        std::uint32_t level;  ///< edge of the node's children = 2^level
+        glm::ivec3 corner;
+        std::uint32_t value;  ///< hoisted value in force, kNone without
+    };
+    constexpr std::uint32_t kNone = 0xffffffffu;
+    std::vector<Frame> stack{{0, region.tree.depth - 1, glm::ivec3{0}, kNone}};
+    while (!stack.empty()) {
+        const Frame f = stack.back();
+        stack.pop_back();
+        const std::uint32_t d = region.tree.nodes[f.index];
+        const std::uint32_t lookup = region.lookup[f.index];
+        for (std::uint32_t slot = 0; slot < 8; ++slot) {
+            if (((node::validMask(d) >> slot) & 1u) == 0) continue;
+            const glm::ivec3 corner = f.corner + glm::ivec3{mortonDecode(slot)} * (1 << f.level);
+            const std::uint32_t value =
+                ((lookup >> slot) & 1u) != 0 ? (lookup >> 8) + countBelow(lookup & 0xffu, slot) : f.value;
+            if (((node::leafMask(d) >> slot) & 1u) != 0) {
+                PFVOX_ASSERT(value != kNone);
+                visit(corner, f.level, region.palette[region.value(value)]);
+            } else {
+                const std::uint32_t child =
+                    region.tree.firstChild(f.index) + countBelow(node::innerMask(d), slot);
+                stack.push_back({child, f.level - 1, corner, value});
+            }
+        }
+    }
+}
+
+}  // namespace
+
+void OctreeModel::indexRegions() {
+    topFirstRegion.clear();
+    topFirstRegion.reserve(topTree.nodes.size());
+    std::uint32_t count = 0;
+    for (const std::uint32_t descriptor : topTree.nodes) {
+        topFirstRegion.push_back(count);
+        count += static_cast<std::uint32_t>(std::popcount(node::leafMask(descriptor)));
+    }
+}
+
+std::optional<MaterialIndex> OctreeModel::at(glm::ivec3 voxel) const {
+    if (regions.empty()) return std::nullopt;
+    const glm::i64vec3 local = glm::i64vec3{voxel} - glm::i64vec3{originVoxels};
+    const std::int64_t edge = std::int64_t{1} << depth;
+    if (glm::any(glm::lessThan(local, glm::i64vec3{0})) ||
+        glm::any(glm::greaterThanEqual(local, glm::i64vec3{edge}))) {
+        return std::nullopt;
+    }
+    const auto region = regionIndexAt(*this, local);
+    if (!region) return std::nullopt;
+    return materialInRegion(regions[*region], local);
+}
+
+VoxelModel toVoxelModel(const OctreeModel& model) {
+    VoxelModel voxels;
+    voxels.name = model.name;
+    for (const OctreeRegion& region : model.regions) {
+        forEachLeaf(region, [&](glm::ivec3 corner, std::uint32_t edgeLog2, MaterialIndex material) {
+            const glm::ivec3 at = region.originVoxels + corner;
+            const bool alignedTile =
+                edgeLog2 >= kBrickEdgeLog2 && ((at.x | at.y | at.z) & ((1 << edgeLog2) - 1)) == 0;
+            if (alignedTile) {
+                voxels.fillTile(at, static_cast<int>(edgeLog2), material);
+                return;
+            }
+            const int n = 1 << edgeLog2;
+            for (int z = 0; z < n; ++z)
+                for (int y = 0; y < n; ++y)
+                    for (int x = 0; x < n; ++x) voxels.set(at + glm::ivec3{x, y, z}, material);
+        });
+    }
+    return voxels;
+}
+
+OctreeStatistics statistics(const OctreeModel& model, std::size_t materialCount) {
+    OctreeStatistics s;
+    s.voxels = model.voxelCount;
+    s.nodes = model.topTree.nodes.size();
+    s.farPointers = model.topTree.farTable.size();
+    s.gpuBytes = 8 * model.topTree.nodes.size() + 4 * model.topTree.farTable.size();
+    s.voxelsOfMaterial.assign(materialCount, 0);
+    for (const OctreeRegion& region : model.regions) {
+        s.nodes += region.tree.nodes.size();
+        s.farPointers += region.tree.farTable.size();
+        s.values += region.valueCount();
+        s.gpuBytes += 8 * region.tree.nodes.size() + 4 * region.tree.farTable.size() + region.values.size();
+        forEachLeaf(region, [&](glm::ivec3, std::uint32_t edgeLog2, MaterialIndex material) {
+            ++s.leaves;
+            s.voxelsOfMaterial[material] += std::uint64_t{1} << (3 * edgeLog2);
+        });
+    }
+    return s;
+}
+
+}  // namespace pfvox

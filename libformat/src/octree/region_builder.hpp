@@ -1,0 +1,33 @@
+// RegionBuilder: one 256^3 region of a voxel model becomes its octree, exactly minimised.
+#pragma once
+
+#include <pfvox/error.hpp>
+#include <pfvox/octree.hpp>
+#include <pfvox/voxel_model.hpp>
+
+#include "octree/node_writer.hpp"
+
+namespace pfvox::octree {
+
+/// Whether the region holds no voxel at all.
+bool isEmpty(const VoxelRegion& region);
+
+/// Reusable by one thread for many regions; keeps its buffers.
+class RegionBuilder {
+  public:
+    /// How far the tree may shrink: a region below a top tree keeps its 8 levels, the only region of a model
+    /// is cut to the smallest aligned cube around its voxels.
+    enum class Extent { Full, Shrink };
+
+    /// Precondition: !isEmpty(source). Errors: BadReference, LimitExceeded.
+    Result<OctreeRegion> build(const VoxelRegion& source, Extent extent, std::size_t materialCount);
+
+  private:
+    Slot buildCells(const VoxelRegion& source, std::uint32_t firstCell, std::uint32_t level);
+    Slot buildBrick(const Brick& brick);
+    Slot buildWord(std::uint64_t bits, const MaterialIndex* materials);
+
+    NodeWriter writer_;
+};
+
+}  // namespace pfvox::octree

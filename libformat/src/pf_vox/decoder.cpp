@@ -1,0 +1,63 @@
+// The public face of reading: decodePfVox, loadPfVox, readPfVoxHeader, validatePfVox.
+#include <fmt/format.h>
+#include <pfvox/pf_vox.hpp>
+
+#include "io/files.hpp"
+#include "pf_vox/asset_reader.hpp"
+
+namespace pfvox {
+
+std::string ContentKey::hex() const {
+    std::string text;
+    for (const std::uint8_t byte : bytes) text += fmt::format("{:02x}", byte);
+    return text;
+}
+
+Result<OctreeAsset> decodePfVox(std::span<const std::byte> bytes, const Limits& limits,
+                                Diagnostics& diagnostics) {
+    ReadOutcome outcome = readAsset(bytes, limits, FaultPolicy::StopAtFirst, diagnostics);
+    if (!outcome.faults.empty()) return tl::make_unexpected(std::move(outcome.faults.front()));
+    return std::move(outcome.asset);
+}
+
+Result<OctreeAsset> loadPfVox(const std::filesystem::path& file, const Limits& limits,
+                              Diagnostics& diagnostics) {
+    PFVOX_TRY(const io::FileBytes, contents, io::readFile(file, limits.maxFileBytes));
+    auto asset = decodePfVox(contents.bytes(), limits, diagnostics);
+    if (!asset) asset.error().file = file;
+    return asset;
+}
+
+Result<PfVoxHeader> readPfVoxHeader(std::span<const std::byte> bytes) {
+    PFVOX_TRY(const FileHead, head, readHead(bytes));
+    PfVoxHeader header{.versionMajor = head.header.versionMajor,
+                       .versionMinor = head.header.versionMinor,
+                       .requiredFeatures = head.header.requiredFeatures,
+                       .optionalFeatures = head.header.optionalFeatures,
+                       .fileBytes = head.header.fileBytes,
+                       .contentKey = {head.header.contentKey},
+                       .sections = {}};
+    for (const layout::Section& s : head.sections) {
+        header.sections.push_back({.fourcc = std::string(s.fourcc.data(), s.fourcc.size()),
+                                   .regionId = s.region,
+                                   .codec = s.codec == layout::Codec::Zstd ? "zstd" : "raw",
+                                   .offsetBytes = s.offset,
+                                   .storedBytes = s.storedBytes,
+                                   .rawBytes = s.rawBytes});
+    }
+    return header;
+}
+
+std::vector<Finding> validatePfVox(std::span<const std::byte> bytes, const Limits& limits) {
+    DiagnosticList ignored;
+    std::vector<Finding> findings;
+    for (Error& fault : readAsset(bytes, limits, FaultPolicy::CollectAll, ignored).faults) {
+        findings.push_back({.id = std::string(toString(fault.code)),
+                            .context = std::move(fault.context),
+                            .offsetBytes = fault.offsetBytes,
+                            .message = std::move(fault.message)});
+    }
+    return findings;
+}
+
+}  // namespace pfvox

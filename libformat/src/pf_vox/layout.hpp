@@ -1,0 +1,145 @@
+// Layout of a PF_VOX 1.0 file, byte for byte. docs/format-pf_vox.md says the same in words; change both or
+// none.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+
+namespace pfvox::layout {
+
+/// "PFVOX", then line ends and a control character that a text-mode transfer would change.
+inline constexpr std::array<std::uint8_t, 8> kMagic{'P', 'F', 'V', 'O', 'X', '\r', '\n', 0x1a};
+inline constexpr std::uint32_t kEndianTag = 0x01020304u;
+inline constexpr std::uint64_t kAlignment = 64;
+inline constexpr std::uint32_t kNoRegion = 0xffffffffu;
+
+/// Features a reader must know to read the file.
+inline constexpr std::uint32_t kKnownRequiredFeatures = 0;
+
+inline constexpr std::uint32_t kSectionMustUnderstand = 1u << 0;
+enum class Codec : std::uint32_t { Raw = 0, Zstd = 1 };
+
+struct Header {
+    std::array<std::uint8_t, 8> magic;
+    std::uint16_t versionMajor;
+    std::uint16_t versionMinor;
+    std::uint32_t endianTag;
+    std::uint32_t requiredFeatures;
+    std::uint32_t optionalFeatures;
+    std::uint32_t tableOffset;
+    std::uint32_t sectionCount;
+    std::uint64_t fileBytes;
+    std::uint64_t headHash;  ///< xxh3-64 of header (with this field 0) and section table
+    std::array<std::uint8_t, 16> contentKey;
+};
+static_assert(sizeof(Header) == 64 && offsetof(Header, fileBytes) == 32 &&
+              offsetof(Header, contentKey) == 48);
+
+struct Section {
+    std::array<char, 4> fourcc;
+    std::uint32_t flags;
+    Codec codec;
+    std::uint32_t region;  ///< kNoRegion for sections of the whole file
+    std::uint64_t offset;
+    std::uint64_t storedBytes;
+    std::uint64_t rawBytes;
+    std::uint64_t count;    ///< records, nodes or values
+    std::uint64_t rawHash;  ///< xxh3-64 of the raw bytes
+    std::uint64_t reserved;
+};
+static_assert(sizeof(Section) == 64 && offsetof(Section, offset) == 16 && offsetof(Section, rawHash) == 48);
+
+/// MATL
+struct Material {
+    std::array<std::uint8_t, 4> baseColor;  ///< sRGB, linear alpha
+    std::uint8_t type;
+    std::uint8_t reserved;
+    std::int16_t phase;       ///< snorm16
+    std::uint16_t metalness;  ///< unorm16, as the next three
+    std::uint16_t roughness;
+    std::uint16_t specular;
+    std::uint16_t transparency;
+    float indexOfRefraction;
+    float emissionStrength;
+    float density;
+    std::uint32_t name;
+};
+static_assert(sizeof(Material) == 32 && offsetof(Material, indexOfRefraction) == 16);
+
+/// MODL
+struct Model {
+    std::uint64_t voxelCount;
+    std::array<std::int32_t, 3> origin;
+    std::array<std::int32_t, 3> boundsMin;
+    std::array<std::int32_t, 3> boundsMax;
+    std::uint32_t depth;
+    std::uint32_t name;
+    std::uint32_t firstRegion;
+    std::uint32_t regionCount;
+    std::uint32_t topNodeCount;
+    std::uint32_t topBranchCount;
+    std::uint32_t topFarCount;
+    std::array<std::uint32_t, 2> reserved;
+};
+static_assert(sizeof(Model) == 80 && offsetof(Model, depth) == 44);
+
+/// REGN
+struct Region {
+    std::array<std::int32_t, 3> origin;
+    std::uint32_t depth;
+    std::uint32_t nodeCount;
+    std::uint32_t branchCount;  ///< nodes with inner children
+    std::uint32_t farCount;
+    std::uint32_t valueCount;
+    std::uint32_t paletteFirst;  ///< first entry in PALT
+    std::uint32_t paletteCount;
+    std::uint32_t voxelCount;
+    std::array<std::uint16_t, 3> boundsMin;  ///< relative to origin
+    std::array<std::uint16_t, 3> boundsMax;
+    std::array<std::uint32_t, 2> reserved;
+};
+static_assert(sizeof(Region) == 64 && offsetof(Region, boundsMin) == 44);
+
+/// INST
+struct Instance {
+    std::array<float, 12> worldFromModel;  ///< three rows of four
+    std::uint32_t model;
+    std::uint32_t name;
+    std::int32_t layer;
+    std::uint32_t flags;
+};
+inline constexpr std::uint32_t kInstanceHidden = 1u << 0;
+static_assert(sizeof(Instance) == 64);
+
+/// LAYR
+struct Layer {
+    std::uint32_t name;
+    std::uint32_t flags;
+};
+inline constexpr std::uint32_t kLayerHidden = 1u << 0;
+static_assert(sizeof(Layer) == 8);
+
+/// CAMR
+struct Camera {
+    std::array<float, 3> position;
+    std::array<float, 3> target;
+    float fovYDegrees;
+    std::uint32_t name;
+};
+static_assert(sizeof(Camera) == 32);
+
+/// META; `noteCount` u32 name indices follow.
+struct Meta {
+    double voxelSizeMetres;
+    std::uint32_t format;
+    std::uint32_t noteCount;
+};
+static_assert(sizeof(Meta) == 16);
+
+inline constexpr std::uint32_t kMaxRegionDepth = 8;
+inline constexpr std::uint32_t kMaxRegionNodes = ((1u << 24) - 1) / 7;  ///< 8^0 + ... + 8^7
+inline constexpr std::uint32_t kMaxRegionValues = 1u << 24;
+
+}  // namespace pfvox::layout

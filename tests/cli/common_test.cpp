@@ -1,0 +1,101 @@
+// What the tools share, tested without a process: patterns, suggestions, quantities, exit codes, batches.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <vector>
+
+#include "common/batch.hpp"
+#include "common/depfile.hpp"
+#include "common/exit_code.hpp"
+#include "common/table.hpp"
+#include "common/text.hpp"
+
+namespace pfvox::tools {
+
+TEST(Glob, starsStayInAFolderAndDoubleStarsDoNot) {
+    EXPECT_TRUE(globMatches("*.vox", "a/b/c.vox")) << "a pattern without '/' is about the file name";
+    EXPECT_TRUE(globMatches("a/*/c.vox", "a/b/c.vox"));
+    EXPECT_FALSE(globMatches("a/*.vox", "a/b/c.vox"));
+    EXPECT_TRUE(globMatches("a/**", "a/b/c.vox"));
+    EXPECT_TRUE(globMatches("a/**/c.vox", "a/c.vox"));
+    EXPECT_TRUE(globMatches("**/c.vox", "c.vox"));
+    EXPECT_TRUE(globMatches("?.vox", "c.vox"));
+    EXPECT_FALSE(globMatches("a?c.vox/x", "a/c.vox/x"));
+    EXPECT_FALSE(globMatches("c.vo", "c.vox"));
+    EXPECT_FALSE(globMatches("", "c.vox"));
+}
+
+TEST(NearestWord, findsTyposAndBeginningsButNoStrangers) {
+    const std::vector<std::string> words{"--force", "--explain", "--dry-run"};
+    EXPECT_EQ(nearestWord("--forse", words), "--force");
+    EXPECT_EQ(nearestWord("--FORCE", words), "--force");
+    EXPECT_EQ(nearestWord("--expl", words), "--explain");
+    EXPECT_EQ(nearestWord("--dryrun", words), "--dry-run");
+    EXPECT_EQ(nearestWord("--brightness", words), std::nullopt);
+}
+
+TEST(Text, quantitiesReadWell) {
+    EXPECT_EQ(formatBytes(0), "0 B");
+    EXPECT_EQ(formatBytes(1023), "1023 B");
+    EXPECT_EQ(formatBytes(1024), "1.0 KiB");
+    EXPECT_EQ(formatBytes(1024 * 1024 - 1), "1.0 MiB") << "never 1024.0 KiB";
+    EXPECT_EQ(formatCount(0), "0");
+    EXPECT_EQ(formatCount(999), "999");
+    EXPECT_EQ(formatCount(1234567), "1,234,567");
+    EXPECT_EQ(plural(1, "file"), "1 file");
+    EXPECT_EQ(plural(0, "file"), "0 files");
+    EXPECT_EQ(formatDuration(185.0), "3 min 05 s");
+}
+
+TEST(Table, alignsByWhatIsSeenNotByBytes) {
+    Table table({{"name"}, {"count", Align::Right}});
+    table.addRow({"Tür", "7"});
+    table.addRow({"Wand", "12"});
+    EXPECT_EQ(table.render(), "name  count\nTür       7\nWand     12\n");
+}
+
+TEST(ExitCode, ofARunFollowsItsFailures) {
+    const std::vector<ErrorCode> none;
+    const std::vector<ErrorCode> alike{ErrorCode::Truncated, ErrorCode::LimitExceeded};
+    const std::vector<ErrorCode> mixed{ErrorCode::Truncated, ErrorCode::FileNotFound};
+    EXPECT_EQ(exitCodeOf(none, 3), ExitCode::Ok);
+    EXPECT_EQ(exitCodeOf(alike, 2), ExitCode::InvalidInput);
+    EXPECT_EQ(exitCodeOf(alike, 3), ExitCode::SomeFailed);
+    EXPECT_EQ(exitCodeOf(mixed, 2), ExitCode::SomeFailed);
+    EXPECT_EQ(exitCodeOf(ErrorCode::GpuLost), ExitCode::Gpu);
+    EXPECT_EQ(exitCodeOf(ErrorCode::Internal), ExitCode::Internal);
+}
+
+TEST(Depfile, escapesWhatMakeWouldMisread) {
+    EXPECT_EQ(depfileText({{.target = "o ut", .prerequisites = {"a#b", "c$d"}}}), "o\\ ut: a\\#b c$$d\n");
+}
+
+TEST(Batch, handsResultsOutInOrderForAnyNumberOfThreads) {
+    for (const int threads : {1, 3, 8}) {
+        constexpr std::size_t kCount = 200;
+        std::vector<std::size_t> order;
+        std::atomic<std::size_t> worked{0};
+        const std::size_t started = runBatch(kCount, {.threads = threads, .failFast = false},
+                                             {.work = [&](std::size_t i) { return ++worked, i % 7 != 0; },
+                                              .finished = [&](std::size_t i) { order.push_back(i); },
+                                              .progressed = {}});
+        EXPECT_EQ(started, kCount);
+        EXPECT_EQ(worked, kCount);
+        ASSERT_EQ(order.size(), kCount);
+        EXPECT_TRUE(std::ranges::is_sorted(order));
+    }
+}
+
+TEST(Batch, failFastStartsNothingAfterAFailure) {
+    std::size_t finished = 0;
+    const std::size_t started = runBatch(100, {.threads = 1, .failFast = true},
+                                         {.work = [](std::size_t i) { return i != 4; },
+                                          .finished = [&](std::size_t) { ++finished; },
+                                          .progressed = {}});
+    EXPECT_EQ(started, 5u);
+    EXPECT_EQ(finished, 5u);
+}
+
+}  // namespace pfvox::tools

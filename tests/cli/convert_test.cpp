@@ -1,0 +1,190 @@
+// vox2pf convert: one file, folders, lists, failures; files that exist afterwards and that must not.
+
+#include <fstream>
+
+#include "cli/vox2pf_fixture.hpp"
+
+namespace pfvox::test {
+
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+
+TEST_F(Vox2pf, convertsOneFileWithAndWithoutTheCommand) {
+    addSource("lamp.vox");
+    const ProcessResult result = run({"lamp.vox", "-o", "out/lamp.pf_vox"});
+    EXPECT_EQ(result.exitCode, 0);
+    EXPECT_THAT(result.out, HasSubstr("converted lamp.vox -> out/lamp.pf_vox"));
+    EXPECT_THAT(result.err, IsEmpty());
+    EXPECT_EQ(run({"convert", "lamp.vox", "-o", "other.pf_vox"}).exitCode, 0);
+    EXPECT_EQ(readText(folder / "out/lamp.pf_vox"), readText(folder / "other.pf_vox"));
+    EXPECT_THAT(filesBelow("out"), ElementsAre("lamp.pf_vox")) << "no temporary file stays behind";
+}
+
+TEST_F(Vox2pf, quietSaysNothingWhenAllIsWell) {
+    addSource("lamp.vox");
+    const ProcessResult result = run({"-q", "lamp.vox", "-o", "lamp.pf_vox"});
+    EXPECT_EQ(result.exitCode, 0);
+    EXPECT_THAT(result.out, IsEmpty());
+    EXPECT_THAT(result.err, IsEmpty());
+}
+
+TEST_F(Vox2pf, missingFileGivesThree) {
+    const ProcessResult result = run({"none.vox", "-o", "none.pf_vox"});
+    EXPECT_EQ(result.exitCode, 3);
+    EXPECT_THAT(result.err, AllOf(HasSubstr("none.vox"), HasSubstr("[file-not-found]")));
+    EXPECT_FALSE(exists("none.pf_vox"));
+}
+
+TEST_F(Vox2pf, unwritableOutputGivesThree) {
+    addSource("lamp.vox");
+    writeText(folder / "wall", "a file, not a folder");
+    const ProcessResult result = run({"lamp.vox", "-o", "wall/below/lamp.pf_vox"});
+    EXPECT_EQ(result.exitCode, 3);
+    EXPECT_THAT(result.err, HasSubstr("[file-not-writable]"));
+    EXPECT_EQ(readText(folder / "wall"), "a file, not a folder");
+}
+
+TEST_F(Vox2pf, brokenFileGivesFourAndLeavesThePreviousOutput) {
+    addBrokenSource("hall.vox");
+    writeText(folder / "hall.pf_vox", "what was there before");
+    const ProcessResult result = run({"hall.vox", "-o", "hall.pf_vox"});
+    EXPECT_EQ(result.exitCode, 4);
+    EXPECT_THAT(result.err, AllOf(HasSubstr("hall.vox"), HasSubstr("@0x"))) << "file and place are named";
+    EXPECT_EQ(readText(folder / "hall.pf_vox"), "what was there before");
+}
+
+TEST_F(Vox2pf, fileOfAnotherKindGivesFive) {
+    writeText(folder / "pointer.vox", "version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 1\n");
+    const ProcessResult result = run({"pointer.vox", "-o", "pointer.pf_vox"});
+    EXPECT_EQ(result.exitCode, 5);
+    EXPECT_THAT(result.err, HasSubstr("Git LFS"));
+}
+
+TEST_F(Vox2pf, limitGivesFourAndNamesTheFigure) {
+    addSource("lamp.vox");
+    const ProcessResult result = run({"lamp.vox", "-o", "lamp.pf_vox", "--limit", "maxFileBytes=1K"});
+    EXPECT_EQ(result.exitCode, 4);
+    EXPECT_THAT(result.err, AllOf(HasSubstr("maxFileBytes"), HasSubstr("[limit-exceeded]")));
+}
+
+TEST_F(Vox2pf, folderIsMirroredAndABadAssetStopsNobody) {
+    addSource("in/lamp.vox");
+    addSource("in/deep/er/statue.vox", "statue.vox");
+    addBrokenSource("in/deep/broken.vox");
+    writeText(folder / "in/readme.txt", "no source");
+    const ProcessResult result = run({"in", "-o", "out"});
+    EXPECT_EQ(result.exitCode, 1);
+    EXPECT_THAT(filesBelow("out"), ElementsAre("deep/er/statue.pf_vox", "lamp.pf_vox"));
+    EXPECT_THAT(result.err, HasSubstr("in/deep/broken.vox"));
+    EXPECT_THAT(result.out, AllOf(HasSubstr("converted"), HasSubstr("failed"))) << "the summary counts both";
+}
+
+TEST_F(Vox2pf, folderWithoutOneGoodAssetTellsByTheKindOfFailure) {
+    addBrokenSource("in/a.vox");
+    addBrokenSource("in/b.vox");
+    EXPECT_EQ(run({"in", "-o", "out"}).exitCode, 4);
+    EXPECT_FALSE(exists("out"));
+}
+
+TEST_F(Vox2pf, emptyFolderIsAnError) {
+    std::filesystem::create_directory(folder / "in");
+    const ProcessResult result = run({"in", "-o", "out"});
+    EXPECT_EQ(result.exitCode, 4);
+    EXPECT_THAT(result.err, HasSubstr("[nothing-to-convert]"));
+}
+
+TEST_F(Vox2pf, failFastStartsNothingFurther) {
+    addBrokenSource("in/a.vox");
+    addSource("in/b.vox");
+    addSource("in/c.vox");
+    const ProcessResult result = run({"in", "-o", "out", "--fail-fast", "-j", "1"});
+    EXPECT_EQ(result.exitCode, 1);
+    EXPECT_THAT(filesBelow("out"), IsEmpty());
+    EXPECT_THAT(result.out, HasSubstr("not started"));
+}
+
+TEST_F(Vox2pf, outputFolderInsideTheInputIsNotSearched) {
+    addSource("in/lamp.vox");
+    addSource("in/out/old.vox");
+    EXPECT_EQ(run({"in", "-o", "in/out"}).exitCode, 0);
+    EXPECT_THAT(filesBelow("in/out"), ElementsAre("lamp.pf_vox", "old.vox"));
+}
+
+TEST_F(Vox2pf, listsNameInputs) {
+    addSource("a.vox");
+    addSource("sub folder/b.vox", "statue.vox");
+    writeText(folder / "list.txt", "a.vox\n\nsub folder/b.vox\n");
+    EXPECT_EQ(run({"@list.txt", "-o", "fromfile"}).exitCode, 0);
+    EXPECT_THAT(filesBelow("fromfile"), ElementsAre("a.pf_vox", "b.pf_vox"));
+    EXPECT_EQ(run({"-", "-o", "fromstdin/"}, {.environment = {}, .input = "a.vox\n", .folder = {}}).exitCode,
+              0);
+    EXPECT_THAT(filesBelow("fromstdin"), ElementsAre("a.pf_vox"));
+    EXPECT_EQ(run({"@absent.txt", "-o", "x"}).exitCode, 3);
+}
+
+TEST_F(Vox2pf, namesWithSpacesAndUmlautsWork) {
+    addSource("in/große Halle/Tür 1.vox");
+    EXPECT_EQ(
+        run({"in", "-o", "aus gabe"}, {.environment = {"LC_ALL=C"}, .input = {}, .folder = {}}).exitCode, 0);
+    EXPECT_THAT(filesBelow("aus gabe"), ElementsAre("große Halle/Tür 1.pf_vox"));
+}
+
+TEST_F(Vox2pf, dryRunWritesNothing) {
+    addSource("in/a.vox");
+    addSource("in/b.vox", "statue.vox");
+    const ProcessResult result = run({"in", "-o", "out", "--dry-run", "--explain", "--depfile", "d.d"});
+    EXPECT_EQ(result.exitCode, 0);
+    EXPECT_THAT(result.out, AllOf(HasSubstr("would convert in/a.vox"), HasSubstr("there was no output")));
+    EXPECT_FALSE(exists("out"));
+    EXPECT_FALSE(exists("d.d"));
+}
+
+TEST_F(Vox2pf, noClobberKeepsWhatIsThere) {
+    addSource("lamp.vox");
+    writeText(folder / "lamp.pf_vox", "precious");
+    const ProcessResult result = run({"lamp.vox", "-o", "lamp.pf_vox", "--no-clobber"});
+    EXPECT_EQ(result.exitCode, 0);
+    EXPECT_EQ(readText(folder / "lamp.pf_vox"), "precious");
+}
+
+TEST_F(Vox2pf, bytesDependNeitherOnThreadsNorOnTheFolder) {
+    for (const char* demo : {"courtyard.vox", "lamp.vox", "statue.vox", "tree.vox"}) addSource(demo, demo);
+    std::filesystem::create_directory(folder / "elsewhere");
+    EXPECT_EQ(run({".", "-o", "one", "-j", "1"}).exitCode, 0);
+    EXPECT_EQ(run({".", "-o", "eight", "-j", "8"}).exitCode, 0);
+    ProcessSetup elsewhere{.environment = {"LC_ALL=C.utf8"}, .input = {}, .folder = folder / "elsewhere"};
+    EXPECT_EQ(run({"..", "-o", "../other"}, elsewhere).exitCode, 0);
+    const auto reference = readTree(folder / "one");
+    EXPECT_EQ(reference.size(), 4u);
+    EXPECT_EQ(reference, readTree(folder / "eight"));
+    EXPECT_EQ(reference, readTree(folder / "other"));
+}
+
+TEST_F(Vox2pf, archiveIsSmallerAndDiffersInContentKey) {
+    addSource("courtyard.vox", "courtyard.vox");
+    EXPECT_EQ(run({"courtyard.vox", "-o", "fast.pf_vox"}).exitCode, 0);
+    EXPECT_EQ(run({"courtyard.vox", "-o", "small.pf_vox", "--archive"}).exitCode, 0);
+    EXPECT_LT(std::filesystem::file_size(folder / "small.pf_vox"),
+              std::filesystem::file_size(folder / "fast.pf_vox"));
+}
+
+TEST_F(Vox2pf, interruptGives130AndNoTemporaryFile) {
+    for (int i = 0; i < 200; ++i) addSource("in/" + std::to_string(i) + ".vox", "courtyard.vox");
+    Process child({PFVOX_VOX2PF, "in", "-o", "out", "-j", "2"},
+                  {.environment = {}, .input = {}, .folder = folder.path()});
+    while (!exists("out")) ::usleep(1000);
+    child.send(SIGINT);
+    const ProcessResult result = child.finish();
+    EXPECT_EQ(result.exitCode, 130);
+    const auto written = readTree(folder / "out");
+    ASSERT_FALSE(written.empty());
+    for (const auto& [name, bytes] : written) {
+        EXPECT_THAT(name, Not(HasSubstr(".tmp")));
+        EXPECT_EQ(bytes, written.begin()->second) << name << " is not complete";
+    }
+}
+
+}  // namespace pfvox::test

@@ -1,0 +1,137 @@
+// Help, version and wrong usage: what is printed where, and the exit code.
+
+#include "cli/vox2pf_fixture.hpp"
+
+namespace pfvox::test {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+using ::testing::StartsWith;
+
+TEST_F(Vox2pf, helpGoesToStdoutAndExitsWithZero) {
+    for (const auto& arguments : std::vector<std::vector<std::string>>{
+             {"--help"}, {"-h"}, {"convert", "--help"}, {"info", "--help"}, {"validate", "--help"}}) {
+        const ProcessResult result = run(arguments);
+        EXPECT_EQ(result.exitCode, 0);
+        EXPECT_THAT(result.out, AllOf(HasSubstr("Usage:"), HasSubstr("Examples:"), HasSubstr("Exit codes:")));
+        EXPECT_THAT(result.err, IsEmpty());
+    }
+}
+
+TEST_F(Vox2pf, versionNamesTheFormats) {
+    const ProcessResult result = run({"--version"});
+    EXPECT_EQ(result.exitCode, 0);
+    EXPECT_THAT(result.out, AllOf(StartsWith("vox2pf "), HasSubstr(".vox"), HasSubstr("PF_VOX 1.")));
+    EXPECT_THAT(result.err, IsEmpty());
+}
+
+TEST_F(Vox2pf, withoutArgumentsHelpGoesToStderr) {
+    const ProcessResult result = run({});
+    EXPECT_EQ(result.exitCode, 2);
+    EXPECT_THAT(result.out, IsEmpty());
+    EXPECT_THAT(result.err, HasSubstr("Usage:"));
+}
+
+TEST_F(Vox2pf, unknownOptionIsRefusedWithTheNearestOne) {
+    addSource("a.vox");
+    const ProcessResult result = run({"a.vox", "-o", "a.pf_vox", "--forse"});
+    EXPECT_EQ(result.exitCode, 2);
+    EXPECT_THAT(result.err, AllOf(HasSubstr("--forse"), HasSubstr("did you mean --force?")));
+    EXPECT_THAT(result.out, IsEmpty());
+    EXPECT_FALSE(exists("a.pf_vox"));
+}
+
+TEST_F(Vox2pf, misspeltCommandIsRefusedWithTheNearestOne) {
+    const ProcessResult result = run({"inof", "a.pf_vox"});
+    EXPECT_EQ(result.exitCode, 2);
+    EXPECT_THAT(result.err, HasSubstr("did you mean info?"));
+}
+
+TEST_F(Vox2pf, numbersOutOfRangeAreRefusedNotClamped) {
+    addSource("a.vox");
+    for (const auto& option : std::vector<std::vector<std::string>>{{"-j", "-1"},
+                                                                    {"-j", "100000"},
+                                                                    {"-j", "2x"},
+                                                                    {"--voxel-size", "0"},
+                                                                    {"--voxel-size", "nan"},
+                                                                    {"--frame", "-2"},
+                                                                    {"--limit", "maxFileBytes=-1"},
+                                                                    {"--limit", "maxFileBytes"},
+                                                                    {"--limit", "maxModels=5G"}}) {
+        std::vector<std::string> arguments{"a.vox", "-o", "a.pf_vox"};
+        arguments.insert(arguments.end(), option.begin(), option.end());
+        const ProcessResult result = run(arguments);
+        EXPECT_EQ(result.exitCode, 2) << option[0] << ' ' << option[1];
+        EXPECT_FALSE(exists("a.pf_vox"));
+    }
+}
+
+TEST_F(Vox2pf, unknownLimitIsRefusedWithTheNearestOne) {
+    const ProcessResult result = run({"a.vox", "-o", "b/", "--limit", "maxfilebytes=1"});
+    EXPECT_EQ(result.exitCode, 2);
+    EXPECT_THAT(result.err, HasSubstr("did you mean maxFileBytes?"));
+}
+
+TEST_F(Vox2pf, contradictingOptionsAreRefused) {
+    addSource("a.vox");
+    EXPECT_EQ(run({"a.vox", "-o", "a.pf_vox", "--force", "--no-clobber"}).exitCode, 2);
+    EXPECT_EQ(run({"a.vox", "-o", "a.pf_vox", "-q", "-v"}).exitCode, 2);
+    EXPECT_FALSE(exists("a.pf_vox"));
+}
+
+TEST_F(Vox2pf, missingOutputIsRefused) {
+    addSource("a.vox");
+    const ProcessResult result = run({"a.vox"});
+    EXPECT_EQ(result.exitCode, 2);
+    EXPECT_THAT(result.err, HasSubstr("--output"));
+}
+
+TEST_F(Vox2pf, severalInputsIntoOneFileAreRefused) {
+    addSource("a.vox");
+    addSource("b.vox", "statue.vox");
+    EXPECT_EQ(run({"a.vox", "b.vox", "-o", "all.pf_vox"}).exitCode, 2);
+    EXPECT_FALSE(exists("all.pf_vox"));
+}
+
+TEST_F(Vox2pf, twoInputsWithOneOutputAreRefusedByName) {
+    addSource("x/hall.vox");
+    addSource("y/hall.vox", "statue.vox");
+    const ProcessResult result = run({"x/hall.vox", "y/hall.vox", "-o", "out"});
+    EXPECT_EQ(result.exitCode, 2);
+    EXPECT_THAT(result.err,
+                AllOf(HasSubstr("x/hall.vox"), HasSubstr("y/hall.vox"), HasSubstr("hall.pf_vox")));
+    EXPECT_FALSE(exists("out"));
+}
+
+TEST_F(Vox2pf, outputThatIsTheInputIsRefused) {
+    const std::filesystem::path source = addSource("hall.pf_vox");
+    const std::string before = readText(source);
+    const ProcessResult result = run({"hall.pf_vox", "-o", "hall.pf_vox"});
+    EXPECT_EQ(result.exitCode, 2);
+    EXPECT_EQ(readText(source), before);
+}
+
+TEST_F(Vox2pf, outputWithAnotherExtensionIsRefused) {
+    addSource("a.vox");
+    const ProcessResult result = run({"a.vox", "-o", "a.bin"});
+    EXPECT_EQ(result.exitCode, 2);
+    EXPECT_THAT(result.err, HasSubstr(".pf_vox"));
+    EXPECT_FALSE(exists("a.bin"));
+}
+
+TEST_F(Vox2pf, colorFollowsOptionAndEnvironment) {
+    const auto errorOf = [&](const std::vector<std::string>& options, const ProcessSetup& setup) {
+        std::vector<std::string> arguments{"none.vox", "-o", "x.pf_vox"};
+        arguments.insert(arguments.end(), options.begin(), options.end());
+        return run(arguments, setup).err;
+    };
+    EXPECT_THAT(errorOf({}, {}), Not(HasSubstr("\x1b["))) << "a pipe is no terminal";
+    EXPECT_THAT(errorOf({"--color", "always"}, {}), HasSubstr("\x1b["));
+    EXPECT_THAT(errorOf({"--color", "auto"}, {.environment = {"NO_COLOR=1"}, .input = {}, .folder = {}}),
+                Not(HasSubstr("\x1b[")));
+    EXPECT_THAT(errorOf({"--color", "never"}, {}), Not(HasSubstr("\x1b[")));
+}
+
+}  // namespace pfvox::test

@@ -1,0 +1,62 @@
+// The bytes of PF_VOX 1.0. A reader must always take the file of every version; the writer of this version must make the
+// same bytes again. Where the writer changes on purpose, run with PFVOX_UPDATE_GOLDEN=1 and say why in CHANGELOG.md.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <pfvox/pf_vox.hpp>
+
+#include "support/voxel_models.hpp"
+
+namespace pfvox {
+namespace {
+
+const std::filesystem::path kGoldenFile = std::filesystem::path(PFVOX_TESTS_DIR) / "golden/data/v1_0.pf_vox";
+
+/// Several levels, a top tree, all record types; and nothing random, so that it is the same everywhere.
+OctreeAsset goldenAsset() {
+    std::vector<VoxelModel> models;
+    models.push_back(test::boxModel({3, 5, 7}, {20, 9, 31}, 1));
+    models[0].name = "box";
+    for (int i = 0; i < 40; ++i) models[0].set({i, (i * 7) % 23, (i * 11) % 29}, static_cast<MaterialIndex>(i % 4));
+    models.push_back(test::boxModel({250, 0, -8}, {262, 10, 3}, 2));
+    models.emplace_back();
+    return buildOctrees(test::assetOf(std::move(models)), Limits{}).value();
+}
+
+std::vector<std::byte> readAll(const std::filesystem::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    const std::string text{std::istreambuf_iterator<char>(in), {}};
+    const auto bytes = std::as_bytes(std::span(text));
+    return {bytes.begin(), bytes.end()};
+}
+
+TEST(PfVoxGolden, WriterMakesTheSameBytes) {
+    const ContentKey key{{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16}};
+    const std::vector<std::byte> bytes = encodePfVox(goldenAsset(), {.contentKey = key}).value();
+    if (std::getenv("PFVOX_UPDATE_GOLDEN") != nullptr) {
+        std::ofstream(kGoldenFile, std::ios::binary)
+            .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+    }
+    EXPECT_EQ(bytes, readAll(kGoldenFile));
+}
+
+TEST(PfVoxGolden, ReaderTakesVersion1_0) {
+    DiagnosticList diagnostics;
+    const auto asset = loadPfVox(kGoldenFile, Limits{}, diagnostics);
+    ASSERT_TRUE(asset) << describe(asset.error());
+    const OctreeAsset expected = goldenAsset();
+    ASSERT_EQ(asset->models.size(), 3u);
+    EXPECT_EQ(asset->models[0].name, "box");
+    EXPECT_EQ(asset->materials, expected.materials);
+    for (int z = -8; z < 32; ++z)
+        for (int y = -2; y < 24; ++y)
+            for (int x = -2; x < 264; ++x) {
+                ASSERT_EQ(asset->models[0].at({x, y, z}), expected.models[0].at({x, y, z}));
+                ASSERT_EQ(asset->models[1].at({x, y, z}), expected.models[1].at({x, y, z}));
+            }
+    EXPECT_EQ(readPfVoxHeader(readAll(kGoldenFile))->contentKey.hex(), "0102030405060708090a0b0c0d0e0f10");
+}
+
+}  // namespace
+}  // namespace pfvox

@@ -1,0 +1,128 @@
+// Scene: what goes to the device, what is left out, and what the statistics say.
+#include <pfvox/gpu_scene.hpp>
+#include <pfvox/ray_query.hpp>
+
+#include "support/gpu_fixture.hpp"
+#include "support/procedural.hpp"
+
+namespace pfvox::test {
+namespace {
+
+class SceneTest : public GpuTest {
+  protected:
+    static Result<gpu::Scene> buildScene(std::span<const gpu::ScenePart> parts) {
+        diagnostics_ = std::make_unique<DiagnosticList>();
+        return gpu::Scene::build(device(), parts, *diagnostics_);
+    }
+    static gpu::GpuHit castOne(const gpu::Scene& scene, const gpu::GpuRay& ray,
+                               gpu::RayMode mode = gpu::RayMode::ClosestHit) {
+        Result<gpu::RayQuery> query = gpu::RayQuery::create(device());
+        EXPECT_TRUE(query);
+        Result<gpu::RayBatch> batch = query->cast(device(), scene, {&ray, 1}, mode);
+        EXPECT_TRUE(batch && batch->hits.size() == 1);
+        return batch->hits.front();
+    }
+    static inline std::unique_ptr<DiagnosticList> diagnostics_;
+};
+
+/// One voxel at (0, 0, 0).
+VoxelAsset oneVoxel() {
+    VoxelAsset asset;
+    asset.materials = {material(255, 0, 0)};
+    asset.models.emplace_back().set({0, 0, 0}, 0);
+    asset.instances.emplace_back();
+    return asset;
+}
+
+constexpr gpu::GpuRay kDownZ{.origin = {0.5f, 0.5f, 9.0f}, .direction = {0.0f, 0.0f, -2.0f}};
+
+TEST_F(SceneTest, CountsWhatItHolds) {
+    const OctreeAsset asset = build(demoRoom());
+    const gpu::ScenePart part{.asset = &asset};
+    PFVOX_ASSERT_VALUE(const gpu::Scene, scene, buildScene({&part, 1}));
+    const gpu::SceneStatistics& s = scene.statistics();
+    EXPECT_EQ(s.models, 1u);
+    EXPECT_EQ(s.instances, 1u);
+    EXPECT_EQ(s.regions, 1u);
+    EXPECT_EQ(s.materials, 6u);
+    EXPECT_EQ(s.voxels, asset.models[0].voxelCount);
+    EXPECT_EQ(s.nodeBytes, 4 * asset.models[0].regions[0].tree.nodes.size());
+    EXPECT_EQ(s.valueBytes, asset.models[0].regions[0].values.size());
+    EXPECT_NEAR(scene.bounds().max.x, 6.4, 1e-9);
+}
+
+TEST_F(SceneTest, ClosestHitGivesEverything) {
+    const OctreeAsset asset = build(oneVoxel());
+    const gpu::ScenePart part{.asset = &asset};
+    PFVOX_ASSERT_VALUE(const gpu::Scene, scene, buildScene({&part, 1}));
+    const gpu::GpuHit hit = castOne(scene, kDownZ);
+    ASSERT_TRUE(hit.hit);
+    EXPECT_FLOAT_EQ(hit.t, 4.0f);
+    EXPECT_EQ(hit.voxel, glm::ivec3(0));
+    EXPECT_EQ(hit.face, 5);
+    EXPECT_EQ(hit.normal, glm::vec3(0.0f, 0.0f, 1.0f));
+}
+
+TEST_F(SceneTest, RaysEndAtTMax) {
+    const OctreeAsset asset = build(oneVoxel());
+    const gpu::ScenePart part{.asset = &asset};
+    PFVOX_ASSERT_VALUE(const gpu::Scene, scene, buildScene({&part, 1}));
+    for (const gpu::RayMode mode : {gpu::RayMode::ClosestHit, gpu::RayMode::AnyHit}) {
+        gpu::GpuRay ray = kDownZ;
+        ray.tMax = 3.9f;
+        EXPECT_FALSE(castOne(scene, ray, mode).hit);
+        ray.tMax = 4.1f;
+        EXPECT_TRUE(castOne(scene, ray, mode).hit);
+    }
+}
+
+TEST_F(SceneTest, EmptyScenesAreMissed) {
+    const OctreeAsset nothing;
+    const gpu::ScenePart part{.asset = &nothing};
+    PFVOX_ASSERT_VALUE(const gpu::Scene, scene, buildScene({&part, 1}));
+    EXPECT_TRUE(scene.bounds().empty());
+    EXPECT_FALSE(castOne(scene, kDownZ).hit);
+}
+
+TEST_F(SceneTest, LeavesHiddenAndFlatInstancesOut) {
+    VoxelAsset voxels = oneVoxel();
+    voxels.instances[0].hidden = true;
+    Instance flat;
+    flat.name = "flat";
+    flat.worldFromModel[1] = glm::dvec3(0.0);
+    voxels.instances.push_back(flat);
+    const OctreeAsset asset = build(voxels);
+    const gpu::ScenePart part{.asset = &asset};
+    PFVOX_ASSERT_VALUE(const gpu::Scene, scene, buildScene({&part, 1}));
+    EXPECT_EQ(scene.statistics().instances, 0u);
+    ASSERT_EQ(diagnostics_->entries().size(), 1u);
+    EXPECT_EQ(diagnostics_->entries()[0].id, "scene-flat-instance");
+}
+
+TEST_F(SceneTest, PartsAreCountedOn) {
+    // Two assets beside each other: instance and material numbers of the second follow those of the first.
+    const OctreeAsset first = build(demoRoom());
+    const OctreeAsset second = build(oneVoxel());
+    Affine aside = identityAffine();
+    aside[3] = glm::dvec3(100.0, 0.0, 0.0);
+    const std::array parts{gpu::ScenePart{.asset = &first},
+                           gpu::ScenePart{.asset = &second, .worldFromAsset = aside}};
+    PFVOX_ASSERT_VALUE(const gpu::Scene, scene, buildScene(parts));
+    const gpu::GpuHit hit =
+        castOne(scene, {.origin = {100.5f, 0.5f, 9.0f}, .direction = {0.0f, 0.0f, -1.0f}});
+    ASSERT_TRUE(hit.hit);
+    EXPECT_EQ(hit.instance, 1u);
+    EXPECT_EQ(hit.material, 6u);
+}
+
+TEST_F(SceneTest, InstanceOfAMissingModelIsAnError) {
+    OctreeAsset asset = build(oneVoxel());
+    asset.instances[0].model = 7;
+    const gpu::ScenePart part{.asset = &asset};
+    const auto scene = buildScene({&part, 1});
+    ASSERT_FALSE(scene);
+    EXPECT_EQ(scene.error().code, ErrorCode::BadReference);
+}
+
+}  // namespace
+}  // namespace pfvox::test

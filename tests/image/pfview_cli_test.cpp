@@ -1,0 +1,152 @@
+// pfview as a program: arguments in, exit code, stdout, stderr and files out.
+#include <gmock/gmock.h>
+#include <sys/wait.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <pfvox/pf_vox.hpp>
+#include <sstream>
+
+#include "png.hpp"
+#include "support/procedural.hpp"
+
+namespace pfvox::test {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::StartsWith;
+namespace fs = std::filesystem;
+
+struct Outcome {
+    int exitCode = -1;
+    std::string out;
+    std::string err;
+};
+
+std::string contentOf(const fs::path& file) {
+    std::ostringstream text;
+    text << std::ifstream(file, std::ios::binary).rdbuf();
+    return text.str();
+}
+
+class PfviewCli : public ::testing::Test {
+  protected:
+    void SetUp() override {
+        const auto* const info = ::testing::UnitTest::GetInstance()->current_test_info();
+        folder_ = fs::path(PFVOX_TEST_OUTPUT_DIR) / (std::string("pfview-") + info->name());
+        fs::remove_all(folder_);
+        fs::create_directories(folder_);
+    }
+
+    /// Runs in the test's own folder; arguments as a shell reads them.
+    Outcome run(const std::string& arguments) const {
+        const std::string command =
+            "cd '" + folder_.string() + "' && '" PFVOX_PFVIEW "' " + arguments + " > out 2> err";
+        const int status = std::system(command.c_str());
+        return {.exitCode = WIFEXITED(status) ? WEXITSTATUS(status) : -1,
+                .out = contentOf(folder_ / "out"),
+                .err = contentOf(folder_ / "err")};
+    }
+
+    void writeRoom(const std::string& name) const {
+        const auto bytes = encodePfVox(build(demoRoom()), EncodeSettings{});
+        ASSERT_TRUE(bytes) << describe(bytes.error());
+        write(name, {reinterpret_cast<const char*>(bytes->data()), bytes->size()});
+    }
+    void write(const std::string& name, const std::string& content) const {
+        std::ofstream(folder_ / name, std::ios::binary) << content;
+    }
+
+    fs::path folder_;
+};
+
+TEST_F(PfviewCli, WritesAScreenshot) {
+    writeRoom("my room.pf_vox");
+    const Outcome r = run("'my room.pf_vox' --screenshot a.png --size 64x48 --samples 1 --validate");
+    EXPECT_EQ(r.exitCode, 0) << r.err;
+    EXPECT_THAT(r.out, IsEmpty());
+    const auto picture = viewer::readPng(folder_ / "a.png");
+    ASSERT_TRUE(picture) << describe(picture.error());
+    EXPECT_EQ(picture->width, 64u);
+    EXPECT_EQ(picture->height, 48u);
+}
+
+TEST_F(PfviewCli, WritesStatisticsAndNothingElseToStdout) {
+    writeRoom("a.pf_vox");
+    const Outcome r =
+        run("a.pf_vox --screenshot a.png --size 32x32 --view steps --camera 3,2,20,3,2,3,30 --stats-json -");
+    EXPECT_EQ(r.exitCode, 0) << r.err;
+    EXPECT_THAT(r.out, StartsWith("{"));
+    EXPECT_THAT(r.out, HasSubstr("\"cappedRays\": 0"));
+    EXPECT_THAT(r.out, HasSubstr("\"view\": \"steps\""));
+}
+
+TEST_F(PfviewCli, HelpAndVersionGoToStdout) {
+    for (const char* const argument : {"--help", "-h", "--version"}) {
+        const Outcome r = run(argument);
+        EXPECT_EQ(r.exitCode, 0);
+        EXPECT_THAT(r.out, HasSubstr("pfview"));
+        EXPECT_THAT(r.err, IsEmpty());
+    }
+}
+
+TEST_F(PfviewCli, WrongUsageIsShortAndOnStderr) {
+    writeRoom("a.pf_vox");
+    const std::string picture = "a.pf_vox --screenshot a.png ";
+    for (const std::string& arguments :
+         {std::string(), std::string("a.pf_vox"), std::string("--no-such-option"), picture + "--size 0x5",
+          picture + "--size 99999x5", picture + "--size 12", picture + "--camera 1,2,3",
+          picture + "--camera 1,2,3,1,2,3", picture + "--camera 1,2,3,nan,2,3",
+          picture + "--camera 1,2,3,4,5,6,180", picture + "--view nothing", picture + "--samples 0",
+          picture + "--samples 1e9", picture + "surplus"}) {
+        const Outcome r = run(arguments);
+        EXPECT_EQ(r.exitCode, 2) << arguments;
+        EXPECT_THAT(r.out, IsEmpty()) << arguments;
+        EXPECT_THAT(r.err, StartsWith("pfview: ")) << arguments;
+        EXPECT_LT(std::ranges::count(r.err, '\n'), 4) << arguments;
+        EXPECT_FALSE(fs::exists(folder_ / "a.png")) << arguments;
+    }
+}
+
+TEST_F(PfviewCli, SourceFileGetsTheCommandToRun) {
+    write("hall.vox", "VOX \x96\0\0\0 and so on, long enough to have a header of some kind ..............");
+    const Outcome r = run("hall.vox --screenshot a.png");
+    EXPECT_EQ(r.exitCode, 4);
+    EXPECT_THAT(r.err, HasSubstr("vox2pf 'hall.vox' -o 'hall.pf_vox'"));
+    EXPECT_FALSE(fs::exists(folder_ / "a.png"));
+}
+
+TEST_F(PfviewCli, MissingFileUnwritablePictureAndUnknownDevice) {
+    writeRoom("a.pf_vox");
+    EXPECT_EQ(run("none.pf_vox --screenshot a.png").exitCode, 3);
+    EXPECT_EQ(run("a.pf_vox --size 8x8 --screenshot /dev/null/a.png").exitCode, 3);
+    const Outcome r = run("a.pf_vox --screenshot a.png --device 'no such device'");
+    EXPECT_EQ(r.exitCode, 6);
+    EXPECT_THAT(r.err, HasSubstr("there is: 0: "));
+}
+
+TEST_F(PfviewCli, TruncatedFileIsInvalidInput) {
+    writeRoom("a.pf_vox");
+    fs::resize_file(folder_ / "a.pf_vox", fs::file_size(folder_ / "a.pf_vox") / 2);
+    const Outcome r = run("a.pf_vox --screenshot a.png");
+    EXPECT_EQ(r.exitCode, 4);
+    EXPECT_THAT(r.err, HasSubstr("a.pf_vox"));
+    EXPECT_FALSE(fs::exists(folder_ / "a.png"));
+}
+
+TEST_F(PfviewCli, FailedRunKeepsTheOldPicture) {
+    write("a.png", "old");
+    EXPECT_EQ(run("none.pf_vox --screenshot a.png").exitCode, 3);
+    EXPECT_EQ(contentOf(folder_ / "a.png"), "old");
+}
+
+TEST_F(PfviewCli, ListsDevices) {
+    const Outcome r = run("--list-devices");
+    EXPECT_EQ(r.exitCode, 0);
+    EXPECT_THAT(r.out, StartsWith("0  "));
+}
+
+}  // namespace
+}  // namespace pfvox::test

@@ -1,0 +1,108 @@
+#include "io/files.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <fstream>
+
+namespace pfvox::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Files : public testing::Test {
+  protected:
+    void SetUp() override {
+        folder_ = fs::path(testing::TempDir()) /
+                  ("pfvox-files-" + std::to_string(::getpid()) + "-" +
+                   testing::UnitTest::GetInstance()->current_test_info()->name());
+        fs::remove_all(folder_);
+        fs::create_directories(folder_);
+    }
+    void TearDown() override { fs::remove_all(folder_); }
+
+    static std::span<const std::byte> bytesOf(std::string_view text) { return std::as_bytes(std::span(text)); }
+    static std::string contentOf(const fs::path& file) {
+        std::ifstream in(file, std::ios::binary);
+        return {std::istreambuf_iterator<char>(in), {}};
+    }
+    std::size_t filesInFolder() const {
+        return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder_), fs::directory_iterator{}));
+    }
+
+    fs::path folder_;
+};
+
+TEST_F(Files, WhatIsWrittenIsRead) {
+    const fs::path file = folder_ / "a b" / "ü.bin";
+    ASSERT_TRUE(writeFileAtomically(file, bytesOf("first")));
+    ASSERT_TRUE(writeFileAtomically(file, bytesOf("second, longer")));
+    const auto read = readFile(file, 1000);
+    ASSERT_TRUE(read);
+    EXPECT_EQ(std::string(reinterpret_cast<const char*>(read->bytes().data()), read->bytes().size()), "second, longer");
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / "a b"), fs::directory_iterator{}), 1);
+}
+
+TEST_F(Files, EmptyFileIsReadAsNoBytes) {
+    ASSERT_TRUE(writeFileAtomically(folder_ / "empty", {}));
+    EXPECT_TRUE(readFile(folder_ / "empty", 10)->bytes().empty());
+}
+
+TEST_F(Files, FailuresNameTheFileAndTheReason) {
+    const auto missing = readFile(folder_ / "no.vox", 10);
+    ASSERT_FALSE(missing);
+    EXPECT_EQ(missing.error().code, ErrorCode::FileNotFound);
+    EXPECT_EQ(missing.error().file, folder_ / "no.vox");
+    EXPECT_THAT(missing.error().message, testing::HasSubstr("No such file"));
+
+    EXPECT_EQ(readFile(folder_, 10).error().code, ErrorCode::FileNotReadable);
+
+    ASSERT_TRUE(writeFileAtomically(folder_ / "large", bytesOf("0123456789a")));
+    const auto large = readFile(folder_ / "large", 10);
+    EXPECT_EQ(large.error().code, ErrorCode::LimitExceeded);
+    EXPECT_THAT(large.error().message, testing::HasSubstr("maxFileBytes"));
+}
+
+TEST_F(Files, PipesAndDevicesAreRefusedInsteadOfReadForever) {
+    const fs::path pipe = folder_ / "pipe";
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    EXPECT_EQ(readFile(pipe, 10).error().code, ErrorCode::FileNotReadable);
+    EXPECT_EQ(readFile("/dev/zero", 10).error().code, ErrorCode::FileNotReadable);
+}
+
+TEST_F(Files, FailedWriteLeavesTheOldFileAndNothingElse) {
+    ASSERT_TRUE(writeFileAtomically(folder_ / "plain", bytesOf("old")));
+    const auto below = writeFileAtomically(folder_ / "plain" / "below.bin", bytesOf("new"));
+    ASSERT_FALSE(below);
+    EXPECT_EQ(below.error().code, ErrorCode::FileNotWritable);
+    EXPECT_EQ(contentOf(folder_ / "plain"), "old");
+
+    fs::create_directory(folder_ / "folder");
+    EXPECT_EQ(writeFileAtomically(folder_ / "folder", bytesOf("new")).error().code, ErrorCode::FileNotWritable);
+    EXPECT_EQ(filesInFolder(), 2u);
+}
+
+TEST_F(Files, WriteThatHitsALimitLeavesTheOldFileAndNothingElse) {
+    // A file size limit of the process stands for a full disk: the write fails behind the open.
+    ASSERT_TRUE(writeFileAtomically(folder_ / "asset", bytesOf("old")));
+    rlimit before{};
+    ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
+    const auto handler = ::signal(SIGXFSZ, SIG_IGN);
+    rlimit tight = before;
+    tight.rlim_cur = 8;
+    ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &tight), 0);
+    const auto written = writeFileAtomically(folder_ / "asset", bytesOf("more than eight bytes"));
+    ::setrlimit(RLIMIT_FSIZE, &before);
+    ::signal(SIGXFSZ, handler);
+    ASSERT_FALSE(written);
+    EXPECT_EQ(written.error().code, ErrorCode::FileNotWritable);
+    EXPECT_EQ(contentOf(folder_ / "asset"), "old");
+    EXPECT_EQ(filesInFolder(), 1u);
+}
+
+}  // namespace
+}  // namespace pfvox::io

@@ -1,0 +1,239 @@
+#include "common/command_line.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+
+#include "common/table.hpp"
+#include "common/text.hpp"
+
+namespace pfvox::tools {
+
+namespace {
+
+constexpr int kMaxThreads = 1024;
+
+void print(std::FILE* stream, const std::string& text) {
+    std::fwrite(text.data(), 1, text.size(), stream);
+}
+
+/// "  left    right" with the right parts in one column.
+std::string twoColumns(const std::vector<std::pair<std::string, std::string>>& rows) {
+    std::size_t width = 0;
+    for (const auto& row : rows) width = std::max(width, displayWidth(row.first));
+    std::string text;
+    for (const auto& [left, right] : rows) {
+        text += fmt::format("  {}{}  {}\n", left, std::string(width - displayWidth(left), ' '), right);
+    }
+    return text;
+}
+
+/// The help page of one command.
+class HelpFormatter final : public CLI::Formatter {
+  public:
+    explicit HelpFormatter(HelpText text) : text_(std::move(text)) {}
+
+    std::string make_help(const CLI::App* app, std::string, CLI::AppFormatMode) const override {
+        std::string page = text_.summary + "\n\nUsage:\n";
+        for (const std::string& line : text_.usage) page += "  " + line + "\n";
+        page += commands(app) + optionGroups(app) + examples();
+        page += "\nExit codes:\n";
+        std::vector<std::pair<std::string, std::string>> codes;
+        for (const ExitCodeText& entry : exitCodeTexts()) {
+            codes.emplace_back(fmt::format("{:3}", static_cast<int>(entry.code)), std::string(entry.text));
+        }
+        return page + twoColumns(codes);
+    }
+
+  private:
+    static std::string commands(const CLI::App* app) {
+        std::vector<std::pair<std::string, std::string>> rows;
+        for (const CLI::App* command : app->get_subcommands({})) {
+            rows.emplace_back(command->get_name(), command->get_description());
+        }
+        if (rows.empty()) return {};
+        return fmt::format("\nCommands (`{} <command> --help` tells more):\n", app->get_name()) +
+               twoColumns(rows);
+    }
+
+    static std::string optionGroups(const CLI::App* app) {
+        std::string text;
+        std::vector<std::string> groups = app->get_groups();
+        std::ranges::stable_partition(groups,
+                                      [](const std::string& name) { return name != group::kGeneral; });
+        for (const std::string& group : groups) {
+            std::vector<std::pair<std::string, std::string>> rows;
+            for (const CLI::Option* option : app->get_options()) {
+                if (option->get_group() != group || !option->nonpositional()) continue;
+                rows.emplace_back(names(*option), option->get_description());
+            }
+            if (!rows.empty()) text += "\n" + group + ":\n" + twoColumns(rows);
+        }
+        return text;
+    }
+
+    static std::string names(const CLI::Option& option) {
+        std::string text = option.get_snames().empty() ? "    " : "-" + option.get_snames().front();
+        if (!option.get_lnames().empty()) {
+            text += (option.get_snames().empty() ? "--" : ", --") + option.get_lnames().front();
+        }
+        if (!option.get_option_text().empty()) text += " " + option.get_option_text();
+        return text;
+    }
+
+    std::string examples() const {
+        std::vector<std::pair<std::string, std::string>> rows;
+        for (const Example& example : text_.examples) rows.emplace_back(example.command, example.meaning);
+        return rows.empty() ? std::string() : "\nExamples:\n" + twoColumns(rows);
+    }
+
+    HelpText text_;
+};
+
+std::vector<std::string> optionNames(const CLI::App& command) {
+    std::vector<std::string> names;
+    for (const CLI::Option* option : command.get_options()) {
+        for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    }
+    return names;
+}
+
+const CLI::App& chosenCommand(const CLI::App& tool) {
+    const auto chosen = tool.get_subcommands();
+    return chosen.empty() ? tool : *chosen.front();
+}
+
+/// "unknown option --forse; did you mean --force?", or nothing when every option was known.
+std::optional<std::string> complaintAboutUnknownOption(const CLI::App& tool) {
+    const CLI::App& command = chosenCommand(tool);
+    for (const std::string& word : tool.remaining(true)) {
+        if (!word.starts_with('-')) continue;
+        const std::string name = word.substr(0, word.find('='));
+        const auto nearest = nearestWord(name, optionNames(command));
+        return fmt::format("unknown option {}{}", name, nearest ? "; did you mean " + *nearest + "?" : "");
+    }
+    return std::nullopt;
+}
+
+/// A first word that is nearly a command and names no file, or nothing.
+std::optional<std::string> complaintAboutCommand(const CLI::App& tool,
+                                                 const std::vector<std::string>& arguments) {
+    std::error_code ignored;
+    if (arguments.size() < 2 || std::filesystem::exists(arguments[1], ignored)) return std::nullopt;
+    std::vector<std::string> commands;
+    for (const CLI::App* command : tool.get_subcommands([](const CLI::App*) { return true; })) {
+        commands.push_back(command->get_name());
+    }
+    const auto nearest = nearestWord(arguments[1], commands);
+    if (!nearest) return std::nullopt;
+    return fmt::format("{} is neither a command nor a file; did you mean {}?", arguments[1], *nearest);
+}
+
+}  // namespace
+
+std::unique_ptr<CLI::App> makeTool(const std::string& name, const HelpText& text,
+                                   const std::string& version) {
+    auto tool = std::make_unique<CLI::App>(text.summary, name);
+    tool->formatter(std::make_shared<HelpFormatter>(text));
+    tool->set_help_flag("-h,--help", "print this page")->group(group::kGeneral);
+    tool->set_version_flag("--version", version, "print the version and the formats read and written")
+        ->group(group::kGeneral);
+    return tool;
+}
+
+CLI::App& addCommand(CLI::App& tool, const std::string& name, const HelpText& text) {
+    CLI::App& command = *tool.add_subcommand(name, text.summary);
+    command.formatter(std::make_shared<HelpFormatter>(text));
+    command.set_help_flag("-h,--help", "print this page")->group(group::kGeneral);
+    return command;
+}
+
+std::vector<std::string> withDefaultCommand(const CLI::App& tool, const std::string& command, int argc,
+                                            const char* const* argv) {
+    std::vector<std::string> arguments(argv + std::min(argc, 1), argv + argc);
+    if (arguments.empty()) return arguments;
+    const std::string& first = arguments.front();
+    const auto commands = tool.get_subcommands([](const CLI::App*) { return true; });
+    const bool isCommand =
+        std::ranges::any_of(commands, [&](const CLI::App* app) { return app->get_name() == first; });
+    if (isCommand || first == "--help" || first == "-h" || first == "--version") return arguments;
+    arguments.insert(arguments.begin(), command);
+    return arguments;
+}
+
+std::optional<ExitCode> parseCommandLine(CLI::App& tool, const std::vector<std::string>& arguments) {
+    if (arguments.empty()) {
+        print(stderr, tool.help());
+        return ExitCode::Usage;
+    }
+    try {
+        tool.parse(
+            std::vector<std::string>(arguments.rbegin(), arguments.rend()));  // CLI11 pops from the back
+    } catch (const CLI::CallForHelp&) {
+        print(stdout, chosenCommand(tool).help());
+        return ExitCode::Ok;
+    } catch (const CLI::CallForVersion& version) {
+        print(stdout, std::string(version.what()) + "\n");
+        return ExitCode::Ok;
+    } catch (const CLI::ParseError& error) {
+        auto complaint = complaintAboutUnknownOption(tool);
+        if (!complaint) complaint = complaintAboutCommand(tool, arguments);
+        return usageError(chosenCommand(tool), complaint.value_or(error.what()));
+    }
+    return std::nullopt;
+}
+
+ExitCode usageError(const CLI::App& command, const std::string& message) {
+    const CLI::App* tool = command.get_parent();
+    const std::string name =
+        tool == nullptr ? command.get_name() : tool->get_name() + " " + command.get_name();
+    print(stderr, fmt::format("error: {}\nrun `{} --help` for the options\n", message, name));
+    return ExitCode::Usage;
+}
+
+std::function<std::string(const std::string&)> numberFrom(double low, double high) {
+    return [low, high](const std::string& text) -> std::string {
+        double value = 0.0;
+        if (CLI::detail::lexical_cast(text, value) && value >= low && value <= high) return {};
+        return fmt::format("{} is not a number from {} to {}", text, low, high);
+    };
+}
+
+void addCommonOptions(CLI::App& command, CommonOptions& options) {
+    command.add_option("-j,--jobs", options.threads, "threads, 0 = one for each processor (default 0)")
+        ->option_text("N")
+        ->check(numberFrom(0, kMaxThreads))
+        ->group(group::kGeneral);
+    auto* quiet = command.add_flag("-q,--quiet", options.quiet, "print errors only")->group(group::kGeneral);
+    command.add_flag("-v,--verbose", options.verbose, "print notes too, and a line for every file")
+        ->excludes(quiet)
+        ->group(group::kGeneral);
+    command.add_flag("--json", options.json, "print one JSON object a file on stdout")
+        ->group(group::kGeneral);
+    command
+        .add_option("--color", options.color, "auto, always or never (default auto; NO_COLOR is honoured)")
+        ->option_text("WHEN")
+        ->check(CLI::IsMember({"auto", "always", "never"}))
+        ->group(group::kGeneral);
+    command
+        .add_option("--limit", options.limits,
+                    "raise or lower a limit, such as maxFileBytes=1G; may be repeated")
+        ->option_text("NAME=VALUE")
+        ->expected(1)
+        ->take_all()
+        ->group(group::kGeneral);
+}
+
+ReporterSettings CommonOptions::reporterSettings() const {
+    ReporterSettings settings;
+    settings.color = color == "always"  ? ColorMode::Always
+                     : color == "never" ? ColorMode::Never
+                                        : ColorMode::Auto;
+    settings.verbosity = quiet ? Verbosity::Quiet : verbose ? Verbosity::Verbose : Verbosity::Normal;
+    settings.json = json;
+    return settings;
+}
+
+}  // namespace pfvox::tools

@@ -1,0 +1,81 @@
+// Command line: what the tools of pfvox have in common when they read their arguments. CLI11 parses; this
+// header gives every tool the same help page, the same error messages and the same common options.
+//
+// --help goes to stdout and exits 0. Wrong usage is a short text on stderr with the nearest option and exit
+// code 2.
+#pragma once
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <tl/expected.hpp>
+#include <vector>
+
+#include "common/exit_code.hpp"
+#include "common/reporter.hpp"
+#include "pfvox/limits.hpp"
+
+namespace pfvox::tools {
+
+struct Example {
+    std::string command;
+    std::string meaning;
+};
+
+/// What a help page says beside the options.
+struct HelpText {
+    std::string summary;  ///< one sentence
+    std::vector<std::string> usage;
+    std::vector<Example> examples;
+};
+
+/// The tool itself, without options but --help and --version.
+std::unique_ptr<CLI::App> makeTool(const std::string& name, const HelpText& text, const std::string& version);
+
+/// A subcommand of the tool.
+CLI::App& addCommand(CLI::App& tool, const std::string& name, const HelpText& text);
+
+/// Names of option groups, in the order of the help page.
+namespace group {
+inline constexpr const char* kInputOutput = "Input and output";
+inline constexpr const char* kConversion = "Conversion";
+inline constexpr const char* kBuild = "In a build";
+inline constexpr const char* kGeneral = "General";
+}  // namespace group
+
+/// Adds `command` in front of arguments that name no subcommand, so that `vox2pf a.vox -o out` works.
+std::vector<std::string> withDefaultCommand(const CLI::App& tool, const std::string& command, int argc,
+                                            const char* const* argv);
+
+/// Parses. Returns an exit code when the tool has nothing more to do: help or version printed, or wrong usage
+/// reported.
+std::optional<ExitCode> parseCommandLine(CLI::App& tool, const std::vector<std::string>& arguments);
+
+/// Reports wrong usage that the parser cannot see.
+ExitCode usageError(const CLI::App& command, const std::string& message);
+
+/// A check for options: refuses what is not a finite number from `low` to `high`. (CLI::Range lets NaN pass.)
+std::function<std::string(const std::string&)> numberFrom(double low, double high);
+
+/// Options of every subcommand.
+struct CommonOptions {
+    int threads = 0;
+    bool quiet = false;
+    bool verbose = false;
+    bool json = false;
+    std::string color = "auto";
+    std::vector<std::string> limits;
+
+    ReporterSettings reporterSettings() const;
+};
+void addCommonOptions(CLI::App& command, CommonOptions& options);
+
+/// The default limits with every "name=value" applied. Values may end in K, M or G (powers of 1024). On
+/// failure: what is wrong with which word.
+tl::expected<Limits, std::string> parseLimits(const std::vector<std::string>& assignments);
+
+}  // namespace pfvox::tools

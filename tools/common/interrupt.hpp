@@ -1,0 +1,26 @@
+// Interrupt: Ctrl-C and termination signals end a tool at once, with exit code 130 and no half-written file.
+//
+// A thread of its own waits for SIGINT, SIGTERM and SIGHUP. Whoever writes an output holds a WriteGuard; the
+// process ends only when nobody does, so that neither a torn output nor a forgotten temporary file stays
+// behind.
+#pragma once
+
+#include <functional>
+#include <shared_mutex>
+
+namespace pfvox::tools {
+
+/// To be called once, before any other thread starts. `lastWords` runs in the waiting thread just before the
+/// process ends; it may print.
+void exitOnInterrupt(std::function<void()> lastWords);
+
+/// Keeps an interrupt from ending the process while it lives.
+class WriteGuard {
+  public:
+    WriteGuard();
+
+  private:
+    std::shared_lock<std::shared_mutex> lock_;
+};
+
+}  // namespace pfvox::tools

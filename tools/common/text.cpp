@@ -1,0 +1,130 @@
+#include "common/text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+namespace pfvox::tools {
+
+std::string formatBytes(std::uint64_t bytes) {
+    static constexpr std::array<std::string_view, 5> kUnits{"KiB", "MiB", "GiB", "TiB", "PiB"};
+    if (bytes < 1024) return fmt::format("{} B", bytes);
+    double value = static_cast<double>(bytes) / 1024.0;
+    std::size_t unit = 0;
+    while (value >= 1023.95 && unit + 1 < kUnits.size()) {  // 1023.95 would print as 1024.0
+        value /= 1024.0;
+        ++unit;
+    }
+    return fmt::format("{:.1f} {}", value, kUnits[unit]);
+}
+
+std::string formatCount(std::uint64_t count) {
+    std::string digits = std::to_string(count);
+    for (std::size_t left = digits.size(); left > 3;) {
+        left -= 3;
+        digits.insert(left, 1, ',');
+    }
+    return digits;
+}
+
+std::string formatRoughly(double count) {
+    if (count < 1e4) return fmt::format("{:.0f}", count);
+    if (count < 1e6) return fmt::format("{:.1f} thousand", count / 1e3);
+    if (count < 1e9) return fmt::format("{:.1f} million", count / 1e6);
+    return fmt::format("{:.1f} billion", count / 1e9);
+}
+
+std::string plural(std::uint64_t count, std::string_view singular) {
+    return fmt::format("{} {}{}", formatCount(count), singular, count == 1 ? "" : "s");
+}
+
+std::string formatDuration(double seconds) {
+    if (seconds < 60.0) return fmt::format("{:.2f} s", seconds);
+    const auto whole = static_cast<std::uint64_t>(seconds + 0.5);
+    return fmt::format("{} min {:02} s", whole / 60, whole % 60);
+}
+
+std::size_t displayWidth(std::string_view utf8) {
+    return static_cast<std::size_t>(
+        std::ranges::count_if(utf8, [](char c) { return (static_cast<unsigned char>(c) & 0xc0u) != 0x80u; }));
+}
+
+namespace {
+
+/// Optimal string alignment distance.
+std::size_t editDistance(std::string_view a, std::string_view b) {
+    std::vector<std::vector<std::size_t>> cost(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
+    for (std::size_t i = 0; i <= a.size(); ++i) cost[i][0] = i;
+    for (std::size_t j = 0; j <= b.size(); ++j) cost[0][j] = j;
+    for (std::size_t i = 1; i <= a.size(); ++i) {
+        for (std::size_t j = 1; j <= b.size(); ++j) {
+            const std::size_t replace = cost[i - 1][j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
+            cost[i][j] = std::min({cost[i - 1][j] + 1, cost[i][j - 1] + 1, replace});
+            const bool swapped = i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1];
+            if (swapped) cost[i][j] = std::min(cost[i][j], cost[i - 2][j - 2] + 1);
+        }
+    }
+    return cost[a.size()][b.size()];
+}
+
+std::string lowerCase(std::string_view ascii) {
+    std::string text(ascii);
+    std::ranges::transform(text, text.begin(),
+                           [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
+    return text;
+}
+
+bool matches(std::string_view pattern, std::string_view path) {
+    while (!pattern.empty()) {
+        if (pattern.starts_with("**")) {
+            std::string_view rest = pattern.substr(2);
+            // "**/" also stands for no folder at all.
+            if (rest.starts_with('/') && matches(rest.substr(1), path)) return true;
+            for (std::size_t skip = 0; skip <= path.size(); ++skip) {
+                if (matches(rest, path.substr(skip))) return true;
+            }
+            return false;
+        }
+        if (pattern.front() == '*') {
+            for (std::size_t skip = 0; skip <= path.size(); ++skip) {
+                if (matches(pattern.substr(1), path.substr(skip))) return true;
+                if (skip < path.size() && path[skip] == '/') return false;
+            }
+            return false;
+        }
+        if (path.empty()) return false;
+        if (pattern.front() == '?' ? path.front() == '/' : pattern.front() != path.front()) return false;
+        pattern.remove_prefix(1);
+        path.remove_prefix(1);
+    }
+    return path.empty();
+}
+
+}  // namespace
+
+std::optional<std::string> nearestWord(std::string_view word, std::span<const std::string> candidates) {
+    const std::string typed = lowerCase(word);
+    std::optional<std::string> nearest;
+    std::size_t best = std::max<std::size_t>(2, word.size() / 3) + 1;
+    for (const std::string& candidate : candidates) {
+        const std::string known = lowerCase(candidate);
+        const bool isBeginning = typed.size() >= 4 && known.starts_with(typed);
+        const std::size_t distance = isBeginning ? 1 : editDistance(typed, known);
+        if (distance >= best || distance >= candidate.size()) continue;
+        best = distance;
+        nearest = candidate;
+    }
+    return nearest;
+}
+
+bool globMatches(std::string_view pattern, std::string_view path) {
+    if (pattern.find('/') == std::string_view::npos) {
+        const std::size_t slash = path.rfind('/');
+        if (slash != std::string_view::npos) path.remove_prefix(slash + 1);
+    }
+    return matches(pattern, path);
+}
+
+}  // namespace pfvox::tools

@@ -1,0 +1,40 @@
+// Text for people: quantities, plurals, widths and the nearest word to a misspelt one.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace pfvox::tools {
+
+/// "512 B", "1.4 KiB", "23.0 MiB".
+std::string formatBytes(std::uint64_t bytes);
+
+/// "1,234,567".
+std::string formatCount(std::uint64_t count);
+
+/// "850", "12.3 thousand", "4.1 million": for rates and running totals.
+std::string formatRoughly(double count);
+
+/// "1 file", "3 files".
+std::string plural(std::uint64_t count, std::string_view singular);
+
+/// "0.42 s", "3 min 05 s".
+std::string formatDuration(double seconds);
+
+/// Columns that UTF-8 text takes on a terminal, counting one for each code point.
+std::size_t displayWidth(std::string_view utf8);
+
+/// The candidate that takes the fewest insertions, deletions, replacements and swaps of neighbours to reach,
+/// if it is near enough to be what the user meant. Case does not matter; the beginning of a word counts as
+/// near.
+std::optional<std::string> nearestWord(std::string_view word, std::span<const std::string> candidates);
+
+/// Whether a shell pattern fits a path with '/' separators. `*` and `?` stay within a folder, `**` crosses
+/// folders. A pattern without '/' is matched against the file name alone.
+bool globMatches(std::string_view pattern, std::string_view path);
+
+}  // namespace pfvox::tools

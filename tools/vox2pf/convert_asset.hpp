@@ -1,0 +1,54 @@
+// Convert one asset: decides whether there is anything to do, does it, and says why.
+//
+// Up to date means content: the key in the header of the existing output against the key of the source bytes,
+// the settings and the program. Time stamps are never read.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <pfvox/convert.hpp>
+#include <string>
+#include <vector>
+
+namespace pfvox::tools {
+
+enum class Outcome {
+    NotStarted,  ///< the run ended before
+    Converted,
+    UpToDate,  ///< the output is already what a conversion would give
+    Kept,      ///< not up to date, but --no-clobber
+    Planned,   ///< would be converted: --dry-run
+    Failed,
+};
+
+/// The stable spelling in JSON: "converted", "up-to-date", ...
+std::string_view toString(Outcome outcome);
+
+struct ConvertPolicy {
+    bool force = false;
+    bool noClobber = false;
+    bool dryRun = false;
+    bool ifChanged = false;         ///< leave an output alone when the new bytes are the old ones
+    bool refreshTimeStamp = false;  ///< an output that is up to date gets the present time
+    bool warningsAsErrors = false;
+};
+
+struct AssetResult {
+    Outcome outcome = Outcome::NotStarted;
+    std::string reason;  ///< why it was converted or not, one clause
+    ConvertReport report;
+    std::vector<Diagnostic> diagnostics;
+    std::optional<Error> error;  ///< set exactly when Failed
+};
+
+struct AssetTask {
+    std::filesystem::path source;
+    std::filesystem::path output;
+    ConvertSettings settings;
+};
+
+/// Never throws; whatever goes wrong is in the result. May be called from several threads for different
+/// outputs.
+AssetResult convertAsset(const AssetTask& task, const ConvertPolicy& policy, const Limits& limits);
+
+}  // namespace pfvox::tools

@@ -1,0 +1,177 @@
+#include "vox2pf/settings.hpp"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+#include <pfvox/files.hpp>
+
+#include <array>
+
+#include "common/text.hpp"
+
+namespace pfvox::tools {
+
+namespace {
+
+constexpr std::uint64_t kMaxSettingsBytes = 1 << 20;
+
+template <class T>
+void assignIfSet(T& field, const auto& given) {
+    if (given) field = *given;
+}
+
+}  // namespace
+
+void SettingsPatch::applyTo(ConvertSettings& settings) const {
+    assignIfSet(settings.import.merge, merge);
+    assignIfSet(settings.import.includeHidden, includeHidden);
+    assignIfSet(settings.import.frame, frame);
+    assignIfSet(settings.import.voxelSizeMetres, voxelSizeMetres);
+    assignIfSet(settings.zstdLevel, zstdLevel);
+}
+
+ConvertSettings SettingsFile::settingsFor(const std::filesystem::path& relative,
+                                          const SettingsPatch& commandLine) const {
+    ConvertSettings settings;
+    base_.applyTo(settings);
+    for (const Override& entry : overrides_) {
+        if (globMatches(entry.files, relative.generic_string())) entry.patch.applyTo(settings);
+    }
+    commandLine.applyTo(settings);
+    return settings;
+}
+
+/// Turns a TOML document into a SettingsFile; every complaint has its line and column.
+class SettingsReader {
+  public:
+    explicit SettingsReader(const std::filesystem::path& file) : file_(file) {}
+
+    Result<SettingsFile> read(const toml::table& document) {
+        SettingsFile settings;
+        for (const auto& [key, node] : document) {
+            if (key == "override") {
+                PFVOX_CHECK(readOverrides(node, settings));
+            } else {
+                PFVOX_CHECK(readSection(key, node, settings.base_, {"override"}));
+            }
+        }
+        return settings;
+    }
+
+    tl::unexpected<Error> failAtRegion(ErrorCode code, const toml::source_region& place,
+                                       std::string message) const {
+        return tl::make_unexpected(
+            Error{.code = code,
+                  .message = std::move(message),
+                  .file = file_,
+                  .context = fmt::format("line {}, column {}", place.begin.line, place.begin.column)});
+    }
+
+  private:
+    using Names = std::vector<std::string>;
+
+    tl::unexpected<Error> unknown(const toml::key& key, std::string_view kind, const Names& known) const {
+        const auto nearest = nearestWord(key.str(), known);
+        const std::string hint = nearest         ? fmt::format("; did you mean {}?", *nearest)
+                                 : known.empty() ? "; there are none yet"
+                                                 : fmt::format("; there are {}", fmt::join(known, ", "));
+        return failAtRegion(ErrorCode::BadValue, key.source(),
+                            fmt::format("unknown {} {}{}", kind, key.str(), hint));
+    }
+
+    Result<void> readOverrides(const toml::node& node, SettingsFile& settings) {
+        const toml::array* entries = node.as_array();
+        if (entries == nullptr || !entries->is_homogeneous(toml::node_type::table)) {
+            return failAtRegion(ErrorCode::BadValue, node.source(), "write overrides as [[override]] tables");
+        }
+        for (const toml::node& entry : *entries) PFVOX_CHECK(readOverride(*entry.as_table(), settings));
+        return {};
+    }
+
+    Result<void> readOverride(const toml::table& table, SettingsFile& settings) {
+        SettingsFile::Override entry;
+        for (const auto& [key, node] : table) {
+            if (key == "files") {
+                entry.files = node.value_or(std::string());
+            } else {
+                PFVOX_CHECK(readSection(key, node, entry.patch, {"files"}));
+            }
+        }
+        if (entry.files.empty()) {
+            return failAtRegion(ErrorCode::BadValue, table.source(),
+                                "an [[override]] needs files = \"<pattern>\"");
+        }
+        settings.overrides_.push_back(std::move(entry));
+        return {};
+    }
+
+    /// One of [import], [build], [encode]. `others`: further names that could have been meant.
+    Result<void> readSection(const toml::key& name, const toml::node& node, SettingsPatch& patch,
+                             Names others) {
+        if (name != "import" && name != "build" && name != "encode") {
+            others.insert(others.end(), {"import", "build", "encode"});
+            return unknown(name, "section", others);
+        }
+        const toml::table* table = node.as_table();
+        if (table == nullptr) {
+            return failAtRegion(ErrorCode::BadValue, node.source(),
+                                fmt::format("{} is a section", name.str()));
+        }
+        for (const auto& [key, value] : *table) {
+            if (name == "import") {
+                PFVOX_CHECK(readImportKey(key, value, patch));
+            } else if (name == "encode" && key == "zstdLevel") {
+                PFVOX_CHECK(readNumber(key, value, patch.zstdLevel, 1, kMaxZstdLevel));
+            } else {
+                return unknown(key, "key", name == "encode" ? Names{"zstdLevel"} : Names{});
+            }
+        }
+        return {};
+    }
+
+    Result<void> readImportKey(const toml::key& key, const toml::node& value, SettingsPatch& patch) {
+        if (key == "merge") return readFlag(key, value, patch.merge);
+        if (key == "includeHidden") return readFlag(key, value, patch.includeHidden);
+        if (key == "frame") return readNumber(key, value, patch.frame, 0, kMaxFrame);
+        if (key == "voxelSizeMetres") {
+            return readNumber(key, value, patch.voxelSizeMetres, kMinVoxelSizeMetres, kMaxVoxelSizeMetres);
+        }
+        return unknown(key, "key", {"merge", "includeHidden", "frame", "voxelSizeMetres"});
+    }
+
+    Result<void> readFlag(const toml::key& key, const toml::node& node, std::optional<bool>& field) {
+        field = node.value_exact<bool>();
+        if (field) return {};
+        return failAtRegion(ErrorCode::BadValue, node.source(),
+                            fmt::format("{} is true or false", key.str()));
+    }
+
+    template <class T>
+    Result<void> readNumber(const toml::key& key, const toml::node& node, std::optional<T>& field, T low,
+                            T high) {
+        const std::optional<T> value = node.is_number() ? node.value<T>() : std::nullopt;
+        if (!value || !(*value >= low && *value <= high)) {
+            return failAtRegion(ErrorCode::BadValue, node.source(),
+                                fmt::format("{} is a {}number from {} to {}", key.str(),
+                                            std::is_integral_v<T> ? "whole " : "", low, high));
+        }
+        field = value;
+        return {};
+    }
+
+    const std::filesystem::path& file_;
+};
+
+Result<SettingsFile> SettingsFile::load(const std::filesystem::path& file) {
+    PFVOX_TRY(const io::FileBytes, contents, io::readFile(file, kMaxSettingsBytes));
+    const auto bytes = contents.bytes();
+    SettingsReader reader(file);
+    try {
+        const toml::table document =
+            toml::parse(std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+        return reader.read(document);
+    } catch (const toml::parse_error& error) {
+        return reader.failAtRegion(ErrorCode::BadStructure, error.source(), std::string(error.description()));
+    }
+}
+
+}  // namespace pfvox::tools

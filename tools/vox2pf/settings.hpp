@@ -1,0 +1,63 @@
+// Settings: what decides the content of an output, gathered from defaults, a TOML file, its overrides for
+// single assets and the command line; the later ones win.
+//
+//     [import]
+//     voxelSizeMetres = 0.05
+//     [encode]
+//     zstdLevel = 9
+//     [[override]]
+//     files = "props/**"          # against the path below the input folder; without '/', against the file
+//     name import.merge = true
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <pfvox/convert.hpp>
+#include <string>
+#include <vector>
+
+namespace pfvox::tools {
+
+/// Settings that were given; the others are left as they are.
+struct SettingsPatch {
+    std::optional<bool> merge;
+    std::optional<bool> includeHidden;
+    std::optional<int> frame;
+    std::optional<double> voxelSizeMetres;
+    std::optional<int> zstdLevel;
+
+    void applyTo(ConvertSettings& settings) const;
+};
+
+/// What the fields may hold; the command line and the file share it.
+inline constexpr int kMaxFrame = 1'000'000;
+inline constexpr double kMinVoxelSizeMetres = 1e-6;
+inline constexpr double kMaxVoxelSizeMetres = 1e6;
+inline constexpr int kMaxZstdLevel = 19;
+inline constexpr int kArchiveZstdLevel = 9;
+
+class SettingsFile {
+  public:
+    /// No file: every asset gets the defaults.
+    SettingsFile() = default;
+
+    /// Errors, each with file, line and column: FileNotFound, FileNotReadable, BadStructure (not TOML),
+    /// BadValue (an unknown key, a wrong type or a value out of range).
+    static Result<SettingsFile> load(const std::filesystem::path& file);
+
+    /// The settings of one asset. `relative`: its path below the input folder, or its file name.
+    ConvertSettings settingsFor(const std::filesystem::path& relative,
+                                const SettingsPatch& commandLine) const;
+
+  private:
+    struct Override {
+        std::string files;
+        SettingsPatch patch;
+    };
+    SettingsPatch base_;
+    std::vector<Override> overrides_;
+
+    friend class SettingsReader;
+};
+
+}  // namespace pfvox::tools

@@ -1,0 +1,147 @@
+#include "options.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <cmath>
+#include <vector>
+
+namespace pfvox::viewer {
+
+namespace {
+
+constexpr int kUsageError = 2;
+constexpr std::uint32_t kMaxEdge = 16384;
+
+constexpr const char* kFooter = R"(Examples:
+  pfview hall.pf_vox --screenshot hall.png
+  pfview hall.pf_vox --screenshot hall.png --size 640x480 --view normals
+  pfview hall.pf_vox --screenshot hall.png --camera 4,3,8,0,1,0,50 --stats-json -
+
+Exit codes: 0 ok, 2 usage, 3 cannot read or write, 4 invalid input, 5 unsupported feature or version, 6 GPU unavailable or
+lost, 70 internal error)";
+
+/// The whole text as numbers between separators; nothing if any part is not a finite number.
+std::optional<std::vector<double>> numbersIn(const std::string& text, char separator) {
+    std::vector<double> numbers;
+    const char* at = text.data();
+    const char* const end = at + text.size();
+    for (;;) {
+        double value = 0.0;
+        const auto [rest, error] = std::from_chars(at, end, value);
+        if (error != std::errc{} || !std::isfinite(value)) return std::nullopt;
+        numbers.push_back(value);
+        if (rest == end) return numbers;
+        if (*rest != separator) return std::nullopt;
+        at = rest + 1;
+    }
+}
+
+void parseSize(const std::string& text, PictureSettings& picture) {
+    const auto numbers = numbersIn(text, 'x');
+    const auto isEdge = [](double v) { return v >= 1.0 && v <= kMaxEdge && v == std::floor(v); };
+    if (!numbers || numbers->size() != 2 || !isEdge((*numbers)[0]) || !isEdge((*numbers)[1])) {
+        throw CLI::ValidationError(
+            "--size", fmt::format("'{}' is not WIDTHxHEIGHT with edges from 1 to {}", text, kMaxEdge));
+    }
+    picture.width = static_cast<std::uint32_t>((*numbers)[0]);
+    picture.height = static_cast<std::uint32_t>((*numbers)[1]);
+}
+
+ViewCamera parseCamera(const std::string& text) {
+    const auto numbers = numbersIn(text, ',');
+    if (!numbers || (numbers->size() != 6 && numbers->size() != 7)) {
+        throw CLI::ValidationError("--camera", fmt::format("'{}' is not px,py,pz,tx,ty,tz[,fovY]", text));
+    }
+    const std::vector<double>& n = *numbers;
+    ViewCamera camera{.position = {n[0], n[1], n[2]}, .target = {n[3], n[4], n[5]}};
+    if (n.size() == 7) camera.fovYDegrees = n[6];
+    if (camera.position == camera.target)
+        throw CLI::ValidationError("--camera", "position and target are the same");
+    if (camera.fovYDegrees < 1.0 || camera.fovYDegrees > 170.0) {
+        throw CLI::ValidationError("--camera", "the field of view is not within 1 to 170 degrees");
+    }
+    return camera;
+}
+
+/// Options as CLI11 hands them over, before their text is understood.
+struct RawOptions {
+    std::string size;
+    std::string camera;
+    std::string view;
+};
+
+void declare(CLI::App& app, Options& options, RawOptions& raw) {
+    app.set_version_flag("--version", fmt::format("pfview {}\nreads PF_VOX 1.x", PFVOX_VERSION));
+    app.add_option("file", options.file, "The .pf_vox file to look at")->type_name("FILE");
+    app.footer(kFooter);
+
+    CLI::Option_group* const picture = app.add_option_group("Picture");
+    picture->add_option("--screenshot", options.screenshot, "Write a PNG and exit; needs no window system")
+        ->type_name("PNG");
+    picture->add_option("--size", raw.size, "Pixels, default 1280x720")->type_name("WxH");
+    picture
+        ->add_option("--camera", raw.camera,
+                     "px,py,pz,tx,ty,tz[,fovY] in metres and degrees; default: frames everything")
+        ->type_name("NUMBERS");
+    picture->add_option("--view", raw.view, "final, albedo, normals, material, depth or steps; default final")
+        ->type_name("MODE");
+    picture
+        ->add_option("--samples", options.picture.samplesPerPixel,
+                     "Camera rays for each pixel, 1 to 256; default 4")
+        ->check(CLI::Range(1u, 256u))
+        ->type_name("N");
+
+    CLI::Option_group* const device = app.add_option_group("Device");
+    device
+        ->add_option("--device", options.device,
+                     "Index or part of the name; default: a real GPU, else llvmpipe")
+        ->type_name("X");
+    device->add_flag("--list-devices", options.listDevices, "Print the Vulkan devices and exit");
+    device->add_flag("--validate", options.validation,
+                     "Run with the Vulkan validation layer; its messages are failures");
+
+    CLI::Option_group* const output = app.add_option_group("Output");
+    output->add_option("--stats-json", options.statisticsFile, "Write statistics as JSON; - is stdout")
+        ->type_name("FILE");
+    output->add_flag("-q,--quiet", options.quiet, "No messages but errors");
+}
+
+void understand(const RawOptions& raw, Options& options) {
+    if (!raw.size.empty()) parseSize(raw.size, options.picture);
+    if (!raw.camera.empty()) options.camera = parseCamera(raw.camera);
+    if (!raw.view.empty()) {
+        const std::optional<ViewMode> mode = viewModeFrom(raw.view);
+        if (!mode) throw CLI::ValidationError("--view", fmt::format("there is no view '{}'", raw.view));
+        options.picture.mode = *mode;
+    }
+    if (options.listDevices) return;
+    if (options.file.empty()) throw CLI::ValidationError("file", "a .pf_vox file is needed");
+    if (options.screenshot.empty()) {
+        throw CLI::ValidationError("--screenshot", "is needed: this version has no window yet");
+    }
+}
+
+}  // namespace
+
+std::variant<Options, EarlyExit> parseOptions(int argc, const char* const* argv) {
+    CLI::App app("Shows a .pf_vox file.", "pfview");
+    Options options;
+    RawOptions raw;
+    try {
+        declare(app, options, raw);
+        app.parse(argc, argv);
+        understand(raw, options);
+    } catch (const CLI::CallForHelp&) {
+        return EarlyExit{.exitCode = 0, .text = app.help()};
+    } catch (const CLI::CallForVersion& version) {
+        return EarlyExit{.exitCode = 0, .text = std::string(version.what()) + "\n"};
+    } catch (const CLI::ParseError& error) {
+        return EarlyExit{.exitCode = kUsageError,
+                         .text = fmt::format("pfview: {}\nTry 'pfview --help'.\n", error.what())};
+    }
+    return options;
+}
+
+}  // namespace pfvox::viewer

@@ -1,0 +1,34 @@
+// The command line of pfview.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <variant>
+
+#include "camera.hpp"
+#include "picture.hpp"
+
+namespace pfvox::viewer {
+
+struct Options {
+    std::filesystem::path file;
+    std::filesystem::path screenshot;
+    PictureSettings picture;
+    std::optional<ViewCamera> camera;  ///< default: frames everything
+    std::string device;                ///< gpu::DeviceOptions::selector
+    std::string statisticsFile;        ///< "-" = stdout, empty = none
+    bool listDevices = false;
+    bool validation = false;
+    bool quiet = false;
+};
+
+/// What to print instead of working: help and version go to stdout with exit code 0, faults to stderr with 2.
+struct EarlyExit {
+    int exitCode = 0;
+    std::string text;
+};
+
+std::variant<Options, EarlyExit> parseOptions(int argc, const char* const* argv);
+
+}  // namespace pfvox::viewer

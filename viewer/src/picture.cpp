@@ -1,0 +1,118 @@
+#include "picture.hpp"
+
+#include <array>
+#include <cmath>
+#include <pfvox_shaders/shaders.hpp>
+#include <utility>
+
+#include "shared/view.glsl.h"
+
+namespace pfvox::viewer {
+
+namespace {
+
+struct NamedMode {
+    std::string_view name;
+    ViewMode mode;
+    std::uint32_t shaderMode;
+};
+constexpr std::array kModes{
+    NamedMode{"final", ViewMode::Final, shared::kViewFinal},
+    NamedMode{"albedo", ViewMode::Albedo, shared::kViewAlbedo},
+    NamedMode{"normals", ViewMode::Normals, shared::kViewNormals},
+    NamedMode{"material", ViewMode::Material, shared::kViewMaterial},
+    NamedMode{"depth", ViewMode::Depth, shared::kViewDepth},
+    NamedMode{"steps", ViewMode::Steps, shared::kViewSteps},
+};
+
+const NamedMode& entryOf(ViewMode mode) {
+    for (const NamedMode& entry : kModes) {
+        if (entry.mode == mode) return entry;
+    }
+    return kModes[0];
+}
+
+shared::ViewParameters parametersOf(const ViewCamera& camera, const PictureSettings& settings) {
+    constexpr float kStepsAtHotEnd = 96.0f;
+    const CameraFrame frame = frameOf(camera);
+    const double tanY = std::tan(glm::radians(0.5 * camera.fovYDegrees));
+    const double tanX = tanY * settings.width / settings.height;
+    const Lighting& light = settings.lighting;
+    return {.cameraPosition = glm::vec3(camera.position),
+            .width = settings.width,
+            .cameraForward = glm::vec3(frame.forward),
+            .height = settings.height,
+            .cameraRight = glm::vec3(frame.right * tanX),
+            .samplesPerPixel = settings.samplesPerPixel,
+            .cameraUp = glm::vec3(frame.up * tanY),
+            .mode = entryOf(settings.mode).shaderMode,
+            .sunDirection = glm::normalize(light.sunDirection),
+            .exposure = light.exposure,
+            .sunIrradiance = light.sunIrradiance,
+            .stepScale = kStepsAtHotEnd,
+            .skyZenith = light.skyZenith,
+            .reserved0 = 0,
+            .skyHorizon = light.skyHorizon,
+            .reserved1 = 0,
+            .skyGround = light.skyGround,
+            .reserved2 = 0};
+}
+
+std::uint64_t join(std::uint32_t low, std::uint32_t high) {
+    return std::uint64_t{high} << 32 | low;
+}
+
+}  // namespace
+
+std::optional<ViewMode> viewModeFrom(std::string_view name) {
+    for (const NamedMode& entry : kModes) {
+        if (entry.name == name) return entry.mode;
+    }
+    return std::nullopt;
+}
+
+std::string_view toString(ViewMode mode) {
+    return entryOf(mode).name;
+}
+
+Result<PictureRenderer> PictureRenderer::create(gpu::Device& device) {
+    PFVOX_TRY(gpu::Program, program,
+              device.createProgram(shaders::kViewScene, sizeof(shared::ViewPushConstants), "view scene"));
+    return PictureRenderer(std::move(program));
+}
+
+Result<Picture> PictureRenderer::render(gpu::Device& device, const gpu::Scene& scene,
+                                        const ViewCamera& camera, const PictureSettings& settings,
+                                        PictureStatistics& statistics) const {
+    Picture picture{.width = settings.width,
+                    .height = settings.height,
+                    .pixels = std::vector<std::uint32_t>(std::size_t{settings.width} * settings.height)};
+    const shared::ViewParameters parameters = parametersOf(camera, settings);
+    shared::ViewCounters counters{};
+    PFVOX_TRY(const gpu::Buffer, parameterBuffer, device.createBuffer(sizeof parameters, "view parameters"));
+    PFVOX_TRY(const gpu::Buffer, counterBuffer, device.createBuffer(sizeof counters, "view counters"));
+    PFVOX_TRY(const gpu::Buffer, pixelBuffer, device.createBuffer(4 * picture.pixels.size(), "view pixels"));
+    PFVOX_CHECK(device.upload(parameterBuffer, 0, gpu::bytesOf(parameters)));
+    PFVOX_CHECK(device.upload(counterBuffer, 0, gpu::bytesOf(counters)));
+
+    const shared::ViewPushConstants push{.scene = scene.address(),
+                                         .parameters = parameterBuffer.addressWords(),
+                                         .pixels = pixelBuffer.addressWords(),
+                                         .counters = counterBuffer.addressWords()};
+    const std::uint32_t edge = shared::kViewGroupEdge;
+    const gpu::Dispatch dispatch{
+        .program = &program_,
+        .pushConstants = gpu::bytesOf(push),
+        .groups = {(settings.width + edge - 1) / edge, (settings.height + edge - 1) / edge, 1}};
+    PFVOX_TRY(const double, gpuMs, device.run({&dispatch, 1}));
+    PFVOX_CHECK(device.download(pixelBuffer, 0, std::as_writable_bytes(std::span(picture.pixels))));
+    PFVOX_CHECK(device.download(counterBuffer, 0, std::as_writable_bytes(std::span(&counters, 1))));
+    statistics = {.gpuMs = gpuMs,
+                  .cameraRays = join(counters.raysLow, counters.raysHigh),
+                  .steps = join(counters.stepsLow, counters.stepsHigh),
+                  .hits = counters.primaryHits,
+                  .cappedRays = counters.cappedRays};
+    return picture;
+}
+
+}  // namespace pfvox::viewer

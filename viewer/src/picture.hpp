@@ -1,0 +1,77 @@
+// Pictures: a scene seen by a camera, as 8-bit sRGB pixels.
+//
+//     gpu::Scene + ViewCamera -> [PictureRenderer] -> Picture -> png
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <optional>
+#include <pfvox/gpu.hpp>
+#include <pfvox/gpu_scene.hpp>
+#include <string_view>
+#include <vector>
+
+#include "camera.hpp"
+
+namespace pfvox::viewer {
+
+/// 8-bit sRGB with alpha, rows from the top.
+struct Picture {
+    std::uint32_t width = 0;
+    std::uint32_t height = 0;
+    std::vector<std::uint32_t> pixels;  ///< bytes R, G, B, A in memory
+};
+
+/// What the colours show. The spellings are "final", "albedo", "normals", "material", "depth" and "steps".
+enum class ViewMode : std::uint8_t {
+    Final,     ///< sun with shadow, sky, emission
+    Albedo,    ///< base colour
+    Normals,   ///< world normal, [-1, 1] to [0, 1]
+    Material,  ///< a colour for each material index
+    Depth,     ///< edge of the leaf in the octree: hot = one voxel, cold = 64 and more
+    Steps,     ///< iterations of the traversal: cold = few
+};
+std::optional<ViewMode> viewModeFrom(std::string_view name);
+std::string_view toString(ViewMode mode);
+
+/// Light of the viewer: linear RGB.
+struct Lighting {
+    glm::vec3 sunDirection{-0.4f, -1.0f, -0.3f};  ///< where the light travels; any length
+    glm::vec3 sunIrradiance{3.0f, 2.9f, 2.7f};    ///< at normal incidence
+    glm::vec3 skyZenith{0.30f, 0.48f, 0.80f};     ///< radiance
+    glm::vec3 skyHorizon{0.72f, 0.80f, 0.88f};
+    glm::vec3 skyGround{0.24f, 0.23f, 0.22f};
+    float exposure = 1.0f;
+};
+
+struct PictureSettings {
+    std::uint32_t width = 1280;
+    std::uint32_t height = 720;
+    std::uint32_t samplesPerPixel = 4;
+    ViewMode mode = ViewMode::Final;
+    Lighting lighting;
+};
+
+struct PictureStatistics {
+    double gpuMs = 0.0;
+    std::uint64_t cameraRays = 0;
+    std::uint64_t steps = 0;       ///< octree iterations of all rays, shadows counted
+    std::uint64_t hits = 0;        ///< camera rays that met a voxel
+    std::uint64_t cappedRays = 0;  ///< given up after too many steps: a fault of ours or of the data
+};
+
+class PictureRenderer {
+  public:
+    /// Errors: those of Device::createProgram.
+    static Result<PictureRenderer> create(gpu::Device& device);
+
+    /// Errors: GpuOutOfMemory, GpuLost.
+    Result<Picture> render(gpu::Device& device, const gpu::Scene& scene, const ViewCamera& camera,
+                           const PictureSettings& settings, PictureStatistics& statistics) const;
+
+  private:
+    explicit PictureRenderer(gpu::Program program) : program_(std::move(program)) {}
+    gpu::Program program_;
+};
+
+}  // namespace pfvox::viewer
