@@ -15,8 +15,34 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace pfvox {
+
+/// Options of the SVX importer (docs/import.md, "SVX").
+struct SvxSettings {
+    /// A voxel is solid when its density is at least this fraction of the slice's largest value, [0, 1]. The default
+    /// puts the surface where an antialiased slice has it; 0 takes every voxel whose density is not zero.
+    double threshold = 0.5;
+
+    bool operator==(const SvxSettings&) const = default;
+};
+
+/// Which axis of a source points up.
+enum class UpAxis : std::uint8_t { Y, Z };
+
+/// Options of the OpenVDB importer (docs/import.md, "OpenVDB").
+struct VdbSettings {
+    /// Names of the grids to import, as reports show them ("density", "density[1]" for the second of two equal names).
+    /// Empty: every grid that can be a model.
+    std::vector<std::string> grids;
+    /// Fog volumes: a voxel is solid when it is active and its value is greater than this.
+    double threshold = 0.0;
+    /// VDB files do not say which way is up. Z rotates (x, y, z) to (x, z, -y).
+    UpAxis upAxis = UpAxis::Y;
+
+    bool operator==(const VdbSettings&) const = default;
+};
 
 /// What a user can ask of an import. Every field takes part in the content key.
 struct ImportSettings {
@@ -25,6 +51,8 @@ struct ImportSettings {
     int frame = 0;               ///< animation frame
     /// Edge of a voxel in metres. Default: what the file says, else 0.1 (MagicaVoxel has no unit).
     std::optional<double> voxelSizeMetres;
+    SvxSettings svx;
+    VdbSettings vdb;
 
     bool operator==(const ImportSettings&) const = default;
 };

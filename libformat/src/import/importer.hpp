@@ -23,5 +23,8 @@ struct Importer {
 };
 
 Importer voxImporter();
+Importer svxImporter();
+Importer vdbImporter();
+Importer legacyImporter();
 
 }  // namespace pfvox::import

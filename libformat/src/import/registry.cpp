@@ -14,7 +14,13 @@ namespace pfvox {
 namespace {
 
 const std::vector<import::Importer>& importers() {
-    static const std::vector<import::Importer> all{import::voxImporter()};
+    // Formats with a magic number first; the legacy format has none and is recognised by its name and sizes.
+    static const std::vector<import::Importer> all{
+        import::voxImporter(),
+        import::svxImporter(),
+        import::vdbImporter(),
+        import::legacyImporter(),
+    };
     return all;
 }
 
@@ -55,14 +61,22 @@ std::span<const SourceFormat> sourceFormats() {
 
 bool looksLikeSource(const std::filesystem::path& file) {
     const std::string extension = lowerCaseExtension(file);
+    // Ours and the thesis's files share this name: folder mode must not take its own output for input. Legacy
+    // files are converted when they are named one by one.
+    if (extension == ".pf_vox") return false;
     return std::ranges::any_of(sourceFormats(),
                                [&](const SourceFormat& f) { return f.extension == extension; });
 }
 
 std::string canonicalText(const ImportSettings& settings) {
-    return fmt::format("merge={} hidden={} frame={} voxelSize={}", settings.merge, settings.includeHidden,
-                       settings.frame,
-                       settings.voxelSizeMetres ? fmt::format("{}", *settings.voxelSizeMetres) : "source");
+    std::string grids;
+    for (const std::string& name : settings.vdb.grids) grids += fmt::format("{}:{},", name.size(), name);
+    return fmt::format(
+        "merge={} hidden={} frame={} voxelSize={} svx.threshold={} vdb.grids={} vdb.threshold={} "
+        "vdb.upAxis={}",
+        settings.merge, settings.includeHidden, settings.frame,
+        settings.voxelSizeMetres ? fmt::format("{}", *settings.voxelSizeMetres) : "source",
+        settings.svx.threshold, grids, settings.vdb.threshold, settings.vdb.upAxis == UpAxis::Y ? "y" : "z");
 }
 
 Result<VoxelAsset> importBytes(std::span<const std::byte> bytes, const std::filesystem::path& file,

@@ -1,0 +1,14 @@
+// Materials for sources that tell their voxels apart by number only (SVX material ids, integer VDB grids):
+// such a number has no colour, so each gets one that differs from its neighbours' and is always the same.
+#pragma once
+
+#include <cstdint>
+#include <pfvox/asset.hpp>
+#include <string>
+
+namespace pfvox::import {
+
+/// A diffuse material with a colour that follows from `label` alone.
+Material labelMaterial(std::int64_t label, std::string name);
+
+}  // namespace pfvox::import

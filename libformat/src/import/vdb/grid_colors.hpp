@@ -1,0 +1,29 @@
+// GridColors: a vec3 grid of linear colours as palette materials.
+#pragma once
+
+#include <openvdb/Grid.h>
+
+#include <memory>
+#include <pfvox/voxel_model.hpp>
+#include <vector>
+
+#include "import/vdb/grid_voxels.hpp"
+
+namespace pfvox::import::vdb {
+
+/// More colours are joined by median cut: a smooth gradient of floats has a different colour in every voxel.
+inline constexpr std::size_t kMaxGridColors = 4096;
+
+/// The sRGB byte of a linear value; below 0 and not a number is 0, above 1 is 255.
+std::uint8_t srgbByteOf(float linear);
+
+struct GridColors {
+    std::vector<Material> materials;       ///< the first has index `firstMaterial`
+    std::size_t distinctColors = 0;        ///< before joining
+    std::unique_ptr<const Shader> shader;  ///< shares the tree of the grid
+};
+
+/// `grid` is a Vec3SGrid or Vec3DGrid.
+GridColors makeGridColors(const openvdb::GridBase::ConstPtr& grid, MaterialIndex firstMaterial);
+
+}  // namespace pfvox::import::vdb
