@@ -1,3 +1,4 @@
+#include <map>
 #include <memory>
 #include <pfvox/import.hpp>
 
@@ -81,6 +82,26 @@ void addConversionOptions(CLI::App& command, ConvertOptions& options) {
                     "edge of a voxel, 1e-6 to 1e6 (default: as in the source, else 0.1)")
         ->option_text("METRES")
         ->check(numberFrom(kMinVoxelSizeMetres, kMaxVoxelSizeMetres))
+        ->group(group::kConversion);
+    command
+        .add_option("--svx-threshold", patch.svxThreshold,
+                    "SVX: density of a solid voxel, 0 to 1 of the largest (default 0.5)")
+        ->option_text("SHARE")
+        ->check(numberFrom(0.0, 1.0))
+        ->group(group::kConversion);
+    command
+        .add_option("--vdb-grid", patch.vdbGrids, "OpenVDB: import this grid; may be given again (default: all)")
+        ->option_text("NAME")
+        ->group(group::kConversion);
+    command
+        .add_option("--vdb-threshold", patch.vdbThreshold,
+                    "OpenVDB fog: a voxel is solid above this value (default 0)")
+        ->option_text("VALUE")
+        ->check(numberFrom(-kMaxVdbThreshold, kMaxVdbThreshold))
+        ->group(group::kConversion);
+    command.add_option("--vdb-up", patch.vdbUpAxis, "OpenVDB: which axis points up, y or z (default y)")
+        ->option_text("AXIS")
+        ->transform(CLI::Transformer(std::map<std::string, UpAxis>{{"y", UpAxis::Y}, {"z", UpAxis::Z}}))
         ->group(group::kConversion);
     command.add_flag("--archive", options.archive, "compress harder (zstd 9 instead of 3)")
         ->group(group::kConversion);

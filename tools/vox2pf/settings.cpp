@@ -26,6 +26,10 @@ void SettingsPatch::applyTo(ConvertSettings& settings) const {
     assignIfSet(settings.import.includeHidden, includeHidden);
     assignIfSet(settings.import.frame, frame);
     assignIfSet(settings.import.voxelSizeMetres, voxelSizeMetres);
+    assignIfSet(settings.import.svx.threshold, svxThreshold);
+    assignIfSet(settings.import.vdb.grids, vdbGrids);
+    assignIfSet(settings.import.vdb.threshold, vdbThreshold);
+    assignIfSet(settings.import.vdb.upAxis, vdbUpAxis);
     assignIfSet(settings.zstdLevel, zstdLevel);
 }
 
@@ -135,7 +139,37 @@ class SettingsReader {
         if (key == "voxelSizeMetres") {
             return readNumber(key, value, patch.voxelSizeMetres, kMinVoxelSizeMetres, kMaxVoxelSizeMetres);
         }
-        return unknown(key, "key", {"merge", "includeHidden", "frame", "voxelSizeMetres"});
+        if (key == "svxThreshold") return readNumber(key, value, patch.svxThreshold, 0.0, 1.0);
+        if (key == "vdbThreshold") {
+            return readNumber(key, value, patch.vdbThreshold, -kMaxVdbThreshold, kMaxVdbThreshold);
+        }
+        if (key == "vdbGrids") return readNames(key, value, patch.vdbGrids);
+        if (key == "vdbUp") return readUpAxis(key, value, patch.vdbUpAxis);
+        return unknown(key, "key",
+                       {"merge", "includeHidden", "frame", "voxelSizeMetres", "svxThreshold", "vdbGrids",
+                        "vdbThreshold", "vdbUp"});
+    }
+
+    Result<void> readNames(const toml::key& key, const toml::node& node,
+                           std::optional<std::vector<std::string>>& field) {
+        const toml::array* names = node.as_array();
+        if (names == nullptr || !names->is_homogeneous(toml::node_type::string)) {
+            return failAtRegion(ErrorCode::BadValue, node.source(),
+                                fmt::format("{} is a list of names", key.str()));
+        }
+        field.emplace();
+        for (const toml::node& name : *names) field->push_back(name.value_or(std::string()));
+        return {};
+    }
+
+    Result<void> readUpAxis(const toml::key& key, const toml::node& node, std::optional<UpAxis>& field) {
+        const std::string axis = node.value_or(std::string());
+        if (axis != "y" && axis != "z") {
+            return failAtRegion(ErrorCode::BadValue, node.source(),
+                                fmt::format("{} is \"y\" or \"z\"", key.str()));
+        }
+        field = axis == "z" ? UpAxis::Z : UpAxis::Y;
+        return {};
     }
 
     Result<void> readFlag(const toml::key& key, const toml::node& node, std::optional<bool>& field) {

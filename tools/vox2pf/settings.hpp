@@ -24,6 +24,10 @@ struct SettingsPatch {
     std::optional<bool> includeHidden;
     std::optional<int> frame;
     std::optional<double> voxelSizeMetres;
+    std::optional<double> svxThreshold;
+    std::optional<std::vector<std::string>> vdbGrids;
+    std::optional<double> vdbThreshold;
+    std::optional<UpAxis> vdbUpAxis;
     std::optional<int> zstdLevel;
 
     void applyTo(ConvertSettings& settings) const;
@@ -33,6 +37,7 @@ struct SettingsPatch {
 inline constexpr int kMaxFrame = 1'000'000;
 inline constexpr double kMinVoxelSizeMetres = 1e-6;
 inline constexpr double kMaxVoxelSizeMetres = 1e6;
+inline constexpr double kMaxVdbThreshold = 1e30;
 inline constexpr int kMaxZstdLevel = 19;
 inline constexpr int kArchiveZstdLevel = 9;
 
