@@ -19,6 +19,8 @@ Command makeConvertCommand(CLI::App& tool);
 Command makeInfoCommand(CLI::App& tool);
 /// Everything that is wrong with a PF_VOX file.
 Command makeValidateCommand(CLI::App& tool);
+/// PF_VOX files back to a source format.
+Command makeExportCommand(CLI::App& tool);
 
 /// Extension of the files that this tool writes.
 inline constexpr const char* kPfVoxExtension = ".pf_vox";

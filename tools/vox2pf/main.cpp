@@ -31,7 +31,8 @@ HelpText helpText() {
         .summary =
             "vox2pf converts voxel models to PF_VOX, the octree format of pfvox, and inspects such files.",
         .usage = {"vox2pf [convert] [options] <file | folder | @list | ->... -o <file | folder>",
-                  "vox2pf info [options] <file.pf_vox>...", "vox2pf validate [options] <file.pf_vox>..."},
+                  "vox2pf info [options] <file.pf_vox>...", "vox2pf validate [options] <file.pf_vox>...",
+                  "vox2pf export [options] <file.pf_vox>... -o <file.vox | folder>"},
         .examples = {{"vox2pf hall.vox -o hall.pf_vox", "convert one file"},
                      {"vox2pf assets -o build/assets", "convert a folder, keeping its tree"},
                      {"vox2pf info hall.pf_vox", "what is in it"}}};
@@ -42,7 +43,8 @@ ExitCode run(int argc, char** argv) {
         [] { std::fputs("\ninterrupted; every output is either finished or as it was\n", stderr); });
     const auto tool = makeTool("vox2pf", helpText(), versionText());
     tool->require_subcommand(1);
-    const std::array commands{makeConvertCommand(*tool), makeInfoCommand(*tool), makeValidateCommand(*tool)};
+    const std::array commands{makeConvertCommand(*tool), makeInfoCommand(*tool), makeValidateCommand(*tool),
+                              makeExportCommand(*tool)};
     if (const auto exitCode = parseCommandLine(*tool, withDefaultCommand(*tool, "convert", argc, argv))) {
         return *exitCode;
     }

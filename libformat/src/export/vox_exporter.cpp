@@ -1,0 +1,196 @@
+// The way through this folder: regions of octrees -> parts of at most 256^3 -> models, nodes and materials of a .vox file.
+#include <fmt/format.h>
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <pfvox/export.hpp>
+
+#include "export/vox_chunk_writer.hpp"
+#include "export/vox_materials.hpp"
+
+namespace pfvox {
+
+namespace {
+
+using vox_export::ChunkWriter;
+using vox_export::Content;
+using vox_export::Dict;
+
+constexpr std::size_t kMaxMaterials = 255;
+
+/// From our frame (y up) to MagicaVoxel's (z up): (x, y, z) -> (x, -z, y).
+glm::i64vec3 voxFromOurs(glm::i64vec3 p) { return {p.x, -p.z, p.y}; }
+glm::i64vec3 oursFromVox(glm::i64vec3 p) { return {p.x, p.z, -p.y}; }
+
+/// A region of a model, as one model of the .vox file.
+struct Part {
+    glm::i64vec3 corner;  ///< of its tight box, in model voxels
+    glm::i64vec3 size;    ///< of that box
+    std::uint32_t voxModel;
+};
+
+/// A quarter-turn rotation or mirror and a translation by whole voxels, in our frame.
+struct GridPlacement {
+    std::array<glm::i64vec3, 3> columns;
+    glm::i64vec3 translation;
+
+    glm::i64vec3 rotate(glm::i64vec3 v) const { return columns[0] * v.x + columns[1] * v.y + columns[2] * v.z; }
+};
+
+Result<GridPlacement> gridPlacement(const Instance& instance, std::size_t index, double voxelSizeMetres) {
+    // Positions in a file are float32, which is exact to a thousandth of a voxel far beyond any scene's size.
+    constexpr double kTolerance = 1e-3;
+    GridPlacement placement;
+    bool exact = true;
+    for (int column = 0; column < 4; ++column) {
+        for (int row = 0; row < 3; ++row) {
+            const double value = instance.worldFromModel[column][row] / voxelSizeMetres;
+            const double whole = std::round(value);
+            exact = exact && std::abs(value - whole) < kTolerance && std::abs(whole) < 1e9;
+            auto& target = column < 3 ? placement.columns[static_cast<std::size_t>(column)] : placement.translation;
+            target[row] = exact ? static_cast<std::int64_t>(whole) : 0;
+        }
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+        std::int64_t inColumn = 0;
+        std::int64_t inRow = 0;
+        for (int other = 0; other < 3; ++other) {
+            inColumn += std::abs(placement.columns[static_cast<std::size_t>(axis)][other]);
+            inRow += std::abs(placement.columns[static_cast<std::size_t>(other)][axis]);
+        }
+        exact = exact && inColumn == 1 && inRow == 1;
+    }
+    if (!exact) {
+        return fail(ErrorCode::UnsupportedFeature,
+                    fmt::format("instance {} ('{}') is not turned by quarter turns and moved by whole voxels of {} m: "
+                                "a .vox file cannot place it",
+                                index, instance.name, voxelSizeMetres));
+    }
+    return placement;
+}
+
+/// The rotation byte of a frame: columns of the two first rows' entries, then the signs of the rows.
+int rotationByte(const GridPlacement& placement) {
+    int byte = 0;
+    for (int row = 0; row < 3; ++row) {
+        for (int column = 0; column < 3; ++column) {
+            const glm::i64vec3 axis{column == 0, column == 1, column == 2};
+            const std::int64_t entry = voxFromOurs(placement.rotate(oursFromVox(axis)))[row];
+            if (entry == 0) continue;
+            if (row < 2) byte |= column << (2 * row);
+            if (entry < 0) byte |= 1 << (4 + row);
+        }
+    }
+    return byte;
+}
+
+/// Where the pivot of a part goes (docs/import.md, "Placement"): R (c - o) + M (R b + T).
+glm::i64vec3 voxTranslation(const GridPlacement& placement, const Part& part) {
+    const glm::i64vec3 voxSize{part.size.x, part.size.z, part.size.y};
+    const glm::i64vec3 fromCorner = voxSize / std::int64_t{2} - glm::i64vec3{0, part.size.z, 0};
+    return voxFromOurs(placement.rotate(oursFromVox(fromCorner)) + placement.rotate(part.corner) +
+                       placement.translation);
+}
+
+/// SIZE and XYZI of one region.
+Part writePart(const OctreeModel& model, const OctreeRegion& region, std::uint32_t voxModel, ChunkWriter& chunks) {
+    const Part part{.corner = glm::i64vec3{region.bounds.min}, .size = region.bounds.size(), .voxModel = voxModel};
+    chunks.add("SIZE", Content().i32(part.size.x).i32(part.size.z).i32(part.size.y));
+    Content voxels;
+    voxels.i32(static_cast<std::int64_t>(region.voxelCount));
+    // Top-down in the order of MagicaVoxel's own files: z slowest, then y, then x.
+    for (std::int64_t up = 0; up < part.size.y; ++up) {
+        for (std::int64_t back = 0; back < part.size.z; ++back) {
+            for (std::int64_t x = 0; x < part.size.x; ++x) {
+                const glm::i64vec3 ours = part.corner + glm::i64vec3{x, up, part.size.z - 1 - back};
+                const auto material = model.at(glm::ivec3{ours});
+                if (!material) continue;
+                voxels.byte(static_cast<std::uint8_t>(x)).byte(static_cast<std::uint8_t>(back));
+                voxels.byte(static_cast<std::uint8_t>(up)).byte(static_cast<std::uint8_t>(*material + 1));
+            }
+        }
+    }
+    chunks.add("XYZI", voxels);
+    return part;
+}
+
+void writeNode(const Instance& instance, const GridPlacement& placement, const Part& part, int id,
+               ChunkWriter& chunks) {
+    Dict attributes;
+    if (!instance.name.empty()) attributes.emplace_back("_name", instance.name);
+    if (instance.hidden) attributes.emplace_back("_hidden", "1");
+    const glm::i64vec3 t = voxTranslation(placement, part);
+    const Dict frame{{"_r", fmt::format("{}", rotationByte(placement))},
+                     {"_t", fmt::format("{} {} {}", t.x, t.y, t.z)}};
+    chunks.add("nTRN",
+               Content().i32(id).dict(attributes).i32(id + 1).i32(-1).i32(instance.layer).i32(1).dict(frame));
+    chunks.add("nSHP", Content().i32(id + 1).dict({}).i32(1).i32(part.voxModel).dict({}));
+}
+
+Result<void> writeGraph(const OctreeAsset& asset, const std::vector<std::vector<Part>>& parts, ChunkWriter& chunks) {
+    constexpr int kFirstInstanceNode = 2;
+    Content group;
+    std::int64_t count = 0;
+    for (const Instance& instance : asset.instances) count += static_cast<std::int64_t>(parts[instance.model].size());
+    group.i32(1).dict({}).i32(count);
+    for (std::int64_t i = 0; i < count; ++i) group.i32(kFirstInstanceNode + 2 * i);
+    chunks.add("nTRN", Content().i32(0).dict({}).i32(1).i32(-1).i32(-1).i32(1).dict({}));
+    chunks.add("nGRP", group);
+
+    int id = kFirstInstanceNode;
+    for (std::size_t i = 0; i < asset.instances.size(); ++i) {
+        PFVOX_TRY(const GridPlacement, placement,
+                  gridPlacement(asset.instances[i], i, asset.source.voxelSizeMetres));
+        for (const Part& part : parts[asset.instances[i].model]) {
+            writeNode(asset.instances[i], placement, part, id, chunks);
+            id += 2;
+        }
+    }
+    return {};
+}
+
+void writeMaterials(const OctreeAsset& asset, ChunkWriter& chunks) {
+    for (std::size_t i = 0; i < asset.layers.size(); ++i) {
+        const Layer& layer = asset.layers[i];
+        Dict attributes{{"_name", layer.name}};
+        if (layer.hidden) attributes.emplace_back("_hidden", "1");
+        chunks.add("LAYR", Content().i32(static_cast<std::int64_t>(i)).dict(attributes).i32(-1));
+    }
+    Content palette;
+    for (std::size_t i = 0; i < kMaxMaterials + 1; ++i) {
+        const glm::u8vec4 c = i < asset.materials.size() ? asset.materials[i].baseColor : glm::u8vec4{0, 0, 0, 255};
+        palette.byte(c.x).byte(c.y).byte(c.z).byte(c.w);
+    }
+    chunks.add("RGBA", palette);
+    for (std::size_t i = 0; i < asset.materials.size(); ++i) {
+        chunks.add("MATL",
+                   Content().i32(static_cast<std::int64_t>(i) + 1).dict(vox_export::matlOf(asset.materials[i])));
+    }
+}
+
+}  // namespace
+
+Result<std::vector<std::byte>> exportVox(const OctreeAsset& asset, Diagnostics& diagnostics) {
+    if (asset.materials.size() > kMaxMaterials) {
+        return fail(ErrorCode::LimitExceeded,
+                    fmt::format("{} materials; a .vox file has room for {}", asset.materials.size(), kMaxMaterials));
+    }
+    ChunkWriter chunks;
+    std::vector<std::vector<Part>> parts(asset.models.size());
+    std::uint32_t voxModel = 0;
+    bool named = false;
+    for (std::size_t m = 0; m < asset.models.size(); ++m) {
+        for (const OctreeRegion& region : asset.models[m].regions) {
+            parts[m].push_back(writePart(asset.models[m], region, voxModel++, chunks));
+        }
+    }
+    if (voxModel == 0) return fail(ErrorCode::NothingToConvert, "the asset holds no voxel");
+    PFVOX_CHECK(writeGraph(asset, parts, chunks));
+    writeMaterials(asset, chunks);
+    for (const Material& material : asset.materials) named = named || !material.name.empty();
+    if (named) diagnostics.note("export-vox-precision", "names of materials have no place in a .vox file");
+    return chunks.finish();
+}
+
+}  // namespace pfvox
