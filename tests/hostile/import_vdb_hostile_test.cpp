@@ -7,6 +7,15 @@
 #include "support/memory.hpp"
 #include "support/vdb_writer.hpp"
 
+#ifdef __SANITIZE_ADDRESS__
+/// OpenVDB 10 drops the node that it is about to read when decompression throws in the middle of a tree: at
+/// most one path of nodes for each refused file, and nothing that a caller could free.
+extern "C" const char* __lsan_default_suppressions();
+extern "C" const char* __lsan_default_suppressions() {
+    return "leak:readTopology";
+}
+#endif
+
 namespace pfvox::test {
 namespace {
 
