@@ -1,0 +1,79 @@
+// The house rules of docs/architecture.md that a compiler does not check.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <regex>
+#include <string>
+#include <vector>
+
+namespace pfvox {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path kRoot = fs::path(PFVOX_TESTS_DIR).parent_path();
+
+struct Rule {
+    const char* name;
+    const char* folder;
+    const char* forbidden;                 ///< regular expression, matched line by line
+    std::vector<std::string> exceptions;   ///< files, relative to the root
+};
+
+std::vector<std::string> violations(const Rule& rule) {
+    std::vector<std::string> found;
+    const std::regex forbidden(rule.forbidden);
+    for (const auto& entry : fs::recursive_directory_iterator(kRoot / rule.folder)) {
+        const std::string extension = entry.path().extension().string();
+        if (extension != ".cpp" && extension != ".hpp") continue;
+        const std::string name = entry.path().lexically_relative(kRoot).generic_string();
+        if (std::ranges::find(rule.exceptions, name) != rule.exceptions.end()) continue;
+        std::ifstream in(entry.path());
+        int number = 0;
+        for (std::string line; std::getline(in, line);) {
+            ++number;
+            if (std::regex_search(line, forbidden)) found.push_back(name + ":" + std::to_string(number) + ": " + line);
+        }
+    }
+    return found;
+}
+
+TEST(DependencyRules, Hold) {
+    const char* const kTalk = R"(std::(cout|cerr)|[^\w](printf|fprintf|puts)\(|fmt::print|[^\w_]exit\(|getenv)";
+    const char* const kOpen = R"([^\w](fopen|open)\(.*(O_RDONLY|O_WRONLY|"[rw]b?")|std::(i|o)?fstream)";
+    const std::vector<Rule> rules{
+        {"libformat neither prints, exits nor reads the environment", "libformat", kTalk, {"libformat/src/error.cpp"}},
+        {"libbake neither prints, exits nor reads the environment", "libbake", kTalk, {}},
+        {"only io/files.cpp opens files", "libformat", kOpen, {"libformat/src/io/files.cpp"}},
+        {"libformat knows no Vulkan and no window", "libformat", R"(#include <(vulkan|GLFW|imgui))", {}},
+        {"the format does not know the importers", "libformat/src/pf_vox", R"(#include ["<](import/|pfvox/import))", {}},
+        {"the octree does not know the file", "libformat/src/octree", R"(#include ["<](pf_vox/|pfvox/pf_vox))", {}},
+        {"public headers are free of third-party readers", "libformat/include",
+         R"(#include <(openvdb|pugixml|zip|spng|zstd|xxhash|tbb|toml))", {}},
+        {"public headers of libbake are free of Vulkan", "libbake/include", R"(#include <vulkan)", {}},
+        {"the viewer consumes only what was built", "viewer", R"(#include <pfvox/(import|convert|export)\.hpp>)", {}},
+    };
+    for (const Rule& rule : rules) {
+        SCOPED_TRACE(rule.name);
+        for (const std::string& line : violations(rule)) ADD_FAILURE() << line;
+    }
+}
+
+TEST(DependencyRules, NoFileIsTooLongToBeOneRoom) {
+    constexpr int kMaxLines = 600;
+    for (const char* folder : {"libformat", "libbake", "tools", "viewer", "shaders", "tests", "bench", "data"}) {
+        for (const auto& entry : fs::recursive_directory_iterator(kRoot / folder)) {
+            const std::string extension = entry.path().extension().string();
+            if (extension != ".cpp" && extension != ".hpp" && extension != ".glsl" && extension != ".comp") continue;
+            std::ifstream in(entry.path());
+            int lines = 0;
+            for (std::string line; std::getline(in, line);) ++lines;
+            EXPECT_LE(lines, kMaxLines) << entry.path();
+        }
+    }
+}
+
+}  // namespace
+}  // namespace pfvox
