@@ -26,7 +26,8 @@ float valueNoise(float x, float z, std::uint32_t seed) {
     const int xi = static_cast<int>(std::floor(x));
     const int zi = static_cast<int>(std::floor(z));
     const auto corner = [&](int a, int b) {
-        const std::uint32_t h = static_cast<std::uint32_t>(a) * 73856093u ^ static_cast<std::uint32_t>(b) * 19349663u;
+        const std::uint32_t h =
+            static_cast<std::uint32_t>(a) * 73856093u ^ static_cast<std::uint32_t>(b) * 19349663u;
         return static_cast<float>(hash32(h ^ seed) >> 8) / 16777216.0f;
     };
     const auto smooth = [](float t) { return t * t * (3.0f - 2.0f * t); };
@@ -42,8 +43,8 @@ int terrainHeight(int x, int z) {
     float amplitude = 260.0f;
     float wavelength = 512.0f;
     for (std::uint32_t octave = 0; octave < 7; ++octave) {
-        height += amplitude * valueNoise(static_cast<float>(x) / wavelength, static_cast<float>(z) / wavelength,
-                                         hash32(octave + 17));
+        height += amplitude * valueNoise(static_cast<float>(x) / wavelength,
+                                         static_cast<float>(z) / wavelength, hash32(octave + 17));
         amplitude *= 0.5f;
         wavelength *= 0.5f;
     }
@@ -122,7 +123,8 @@ MeasuredModel makeTerrain() {
     model.voxels = gatherColumns(kEdge, [](int x, int z, std::vector<PackedVoxel>& out) {
         const int height = terrainHeight(x, z);
         const std::uint32_t patch = hashOf(x >> 6, 0, z >> 6) % 16;
-        for (int y = height - 2; y <= height; ++y) out.push_back(packed(x, y, z, 4 * patch + hashOf(x, y, z) % 4));
+        for (int y = height - 2; y <= height; ++y)
+            out.push_back(packed(x, y, z, 4 * patch + hashOf(x, y, z) % 4));
     });
     return model;
 }
