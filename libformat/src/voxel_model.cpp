@@ -147,16 +147,12 @@ VoxelRegion& VoxelModel::regionAt(glm::ivec3 regionCoord) {
 }
 
 void VoxelModel::insert(std::span<const PackedVoxel> voxels, glm::ivec3 origin) {
-    const std::optional<VoxelPartition> partition = VoxelPartition::make(voxels, origin);
-    if (!partition) {
-        for (const PackedVoxel& v : voxels) set(origin + glm::ivec3{v.x, v.y, v.z}, v.material);
-        return;
-    }
+    const VoxelPartition partition(voxels, origin);
     std::vector<VoxelRegion*> targets;
-    for (const VoxelPartition::Part& part : partition->parts())
-        targets.push_back(&regionAt(part.regionCoord));
-    tbb::parallel_for(std::size_t{0}, targets.size(),
-                      [&](std::size_t i) { targets[i]->insert(partition->parts()[i].voxels); });
+    for (const auto& pieces : partition.parts()) targets.push_back(&regionAt(pieces.front().regionCoord));
+    tbb::parallel_for(std::size_t{0}, targets.size(), [&](std::size_t i) {
+        for (const VoxelPartition::Piece& piece : partition.parts()[i]) targets[i]->insert(piece.voxels);
+    });
 }
 
 void VoxelModel::set(glm::ivec3 voxel, MaterialIndex material) {

@@ -1,36 +1,36 @@
 // VoxelPartition: a list of voxels, in whatever order it came, sorted by region (and by nothing else).
 //
 // Regions are independent of each other from here on: filling their bricks and building their octrees are
-// parallel over the parts.
+// parallel over the parts. The list is read once: slices of it that fit in the cache are sorted each for
+// itself, and a region's voxels are the pieces that it has in the slices.
 #pragma once
 
-#include <memory>
-#include <optional>
 #include <pfvox/voxel_model.hpp>
 #include <span>
 #include <vector>
+
+#include "large_array.hpp"
 
 namespace pfvox {
 
 class VoxelPartition {
   public:
-    /// The voxels of one region, in the order of the list.
-    struct Part {
+    /// The voxels of one region from one slice of the list.
+    struct Piece {
         glm::ivec3 regionCoord{0};
         std::span<const RegionVoxel> voxels;
     };
 
-    /// `voxels` are relative to `origin`. Nothing where partitioning does not pay: the list is short, or
-    /// spread so widely that counting its regions would take more than going through it. Runs in the calling
-    /// TBB arena.
-    static std::optional<VoxelPartition> make(std::span<const PackedVoxel> voxels, glm::ivec3 origin);
+    /// `voxels` are relative to `origin`. Runs in the calling TBB arena; the result does not depend on it.
+    VoxelPartition(std::span<const PackedVoxel> voxels, glm::ivec3 origin);
 
-    /// Parts that are not empty; the order depends on nothing but the list.
-    const std::vector<Part>& parts() const { return parts_; }
+    /// For each region that has voxels, its pieces in the order of the list.
+    const std::vector<std::span<const Piece>>& parts() const { return parts_; }
 
   private:
-    std::unique_ptr<RegionVoxel[]> voxels_;
-    std::vector<Part> parts_;
+    LargeArray<RegionVoxel> voxels_;
+    std::vector<Piece> pieces_;
+    std::vector<std::span<const Piece>> parts_;
 };
 
 }  // namespace pfvox

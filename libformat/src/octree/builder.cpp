@@ -20,7 +20,7 @@ namespace {
 struct RegionSource {
     glm::ivec3 coord;
     const VoxelRegion* bricks = nullptr;
-    std::span<const RegionVoxel> voxels = {};
+    std::span<const VoxelPartition::Piece> pieces = {};
 };
 
 /// One region to build and where the result goes.
@@ -51,8 +51,8 @@ std::vector<RegionSource> sourcesOf(const VoxelModel& model) {
 
 std::vector<RegionSource> sourcesOf(const VoxelPartition& partition) {
     std::vector<RegionSource> sources;
-    for (const VoxelPartition::Part& part : partition.parts()) {
-        sources.push_back({.coord = part.regionCoord, .voxels = part.voxels});
+    for (const auto& pieces : partition.parts()) {
+        sources.push_back({.coord = pieces.front().regionCoord, .pieces = pieces});
     }
     return sources;
 }
@@ -144,7 +144,7 @@ class RegionWorker {
         const RegionSource& source = task.source;
         if (source.bricks != nullptr) return builder_.build(*source.bricks, task.extent, materialCount);
         bricks_.reset(source.coord);
-        bricks_.insert(source.voxels);
+        for (const VoxelPartition::Piece& piece : source.pieces) bricks_.insert(piece.voxels);
         return builder_.build(bricks_, task.extent, materialCount);
     }
 
@@ -195,12 +195,8 @@ Result<OctreeModel> buildModel(const std::string& name, std::vector<RegionSource
 }  // namespace
 
 Result<OctreeModel> buildOctree(const VoxelList& list, std::size_t materialCount, const Limits& limits) {
-    if (const auto partition = VoxelPartition::make(list.voxels, list.origin)) {
-        return buildModel(list.name, sourcesOf(*partition), materialCount, limits);
-    }
-    VoxelModel model;
-    model.insert(list.voxels, list.origin);
-    return buildModel(list.name, sourcesOf(model), materialCount, limits);
+    const VoxelPartition partition(list.voxels, list.origin);
+    return buildModel(list.name, sourcesOf(partition), materialCount, limits);
 }
 
 Result<OctreeAsset> buildOctrees(const VoxelAsset& asset, const Limits& limits) {
