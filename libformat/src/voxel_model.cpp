@@ -99,7 +99,9 @@ void VoxelRegion::insert(std::span<const RegionVoxel> voxels) {
         // Voxels come in runs, so most of them go to the brick of the one before.
         if (voxel.address / kBrickVoxels != cell) {
             cell = voxel.address / kBrickVoxels;
-            brick = &brickAt(cell);
+            const std::uint32_t entry = cell < table_.size() ? table_[cell] : kEmpty;
+            brick =
+                (entry & kUniformFlag) == 0 ? &this->brick(entry) : &brickAt(cell);  // kEmpty has the flag
         }
         brick->set(voxel.address % kBrickVoxels, voxel.material);
     }

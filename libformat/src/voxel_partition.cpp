@@ -75,22 +75,39 @@ class SliceSorter {
             sort(slice.subspan(half), origin, out + half, pieces);
             return;
         }
-        next_.assign(grid.count(), 0);
-        for (const PackedVoxel& v : slice) ++next_[grid.regionOf(grid.local(v))];
+        // Neighbours in a list mostly go to the same region, and a counter that was just written is slow to
+        // read again: so both halves of the slice are worked on in turns, with counters of their own.
+        const std::size_t half = slice.size() / 2;
+        next_.assign(2 * grid.count(), 0);
+        const auto counter = [&](const PackedVoxel& v, std::uint32_t lane) -> std::uint32_t& {
+            return next_[2 * grid.regionOf(grid.local(v)) + lane];
+        };
+        inTurns(slice, half, [&](const PackedVoxel& v, std::uint32_t lane) { ++counter(v, lane); });
         std::uint32_t position = 0;
-        for (std::size_t region = 0; region < next_.size(); ++region) {
-            const std::uint32_t count = next_[region];
-            next_[region] = position;
-            if (count != 0) pieces.push_back({grid.coordOf(region), {out + position, count}});
-            position += count;
+        for (std::size_t region = 0; region < grid.count(); ++region) {
+            const std::uint32_t first = position;
+            for (std::size_t lane = 0; lane < 2; ++lane) {
+                const std::uint32_t count = next_[2 * region + lane];
+                next_[2 * region + lane] = position;
+                position += count;
+            }
+            if (position != first) pieces.push_back({grid.coordOf(region), {out + first, position - first}});
         }
-        for (const PackedVoxel& v : slice) {
-            const glm::uvec3 p = grid.local(v);
-            out[next_[grid.regionOf(p)]++] = {addressOf(p), v.material};
-        }
+        inTurns(slice, half, [&](const PackedVoxel& v, std::uint32_t lane) {
+            out[counter(v, lane)++] = {addressOf(grid.local(v)), v.material};
+        });
     }
 
   private:
+    template <class Visit>
+    static void inTurns(std::span<const PackedVoxel> slice, std::size_t half, const Visit& visit) {
+        for (std::size_t i = 0; i < half; ++i) {
+            visit(slice[i], 0);
+            visit(slice[half + i], 1);
+        }
+        if (slice.size() % 2 != 0) visit(slice.back(), 1);
+    }
+
     std::vector<std::uint32_t> next_;
 };
 

@@ -25,12 +25,12 @@ unsigned highestBit(unsigned mask) {
     return static_cast<unsigned>(std::bit_width(mask)) - 1;
 }
 
-/// Writes the values of the slots in `mask`, from the highest slot to the lowest; returns the end.
+/// Writes the values of the slots in `mask`, from the highest slot to the lowest; returns the end. May write
+/// up to one element behind the end. Without a branch, as masks of noisy models cannot be predicted.
 MaterialIndex* writeValues(unsigned mask, const MaterialIndex* bySlot, MaterialIndex* out) {
-    while (mask != 0) {
-        const unsigned slot = highestBit(mask);
-        mask ^= 1u << slot;
-        *out++ = bySlot[slot];
+    for (unsigned slot = 8; slot-- > 0;) {
+        *out = bySlot[slot];
+        out += (mask >> slot) & 1u;
     }
     return out;
 }
@@ -52,7 +52,7 @@ void NodeWriter::push(const Slot& node, std::uint8_t valueMask) {
                .valueMask = valueMask,
                .valueCount = kBitCount[valueMask]};
     records_.advance(record + 1);
-    values_.advance(writeValues(valueMask, node.values.data(), values_.room(8)));
+    values_.advance(writeValues(valueMask, node.values.data(), values_.room(8 + 1)));
 }
 
 Slot NodeWriter::combineVoxels(std::uint64_t occupancy, const MaterialIndex* materials) {
@@ -60,7 +60,7 @@ Slot NodeWriter::combineVoxels(std::uint64_t occupancy, const MaterialIndex* mat
     Slot parent{.kind = Slot::Kind::Inner, .validMask = static_cast<std::uint8_t>(nonZeroBytes(occupancy))};
     Record* const firstRecord = records_.room(8);
     Record* record = firstRecord;
-    MaterialIndex* value = values_.room(64);
+    MaterialIndex* value = values_.room(64 + 1);
     unsigned leafMask = 0;
     unsigned uniformMask = 0;
     for (unsigned rest = parent.validMask; rest != 0;) {
