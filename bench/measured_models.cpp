@@ -77,18 +77,16 @@ double distance(int edge, int x, int y, int z) {
     return std::sqrt((x - c) * (x - c) + (y - c) * (y - c) + (z - c) * (z - c));
 }
 
-MeasuredModel makeSphere() {
-    constexpr int kEdge = 512;
-    constexpr double kRadius = 142.0;
-    MeasuredModel model{.name = "sphere", .edge = kEdge, .materialCount = 9, .voxels = {}};
-    model.voxels = gatherColumns(kEdge, [](int x, int z, std::vector<PackedVoxel>& out) {
-        for (int y = 0; y < kEdge; ++y) {
-            const double d = distance(kEdge, x, y, z);
-            if (d > kRadius) continue;
+MeasuredModel makeBall(const std::string& name, int edge, double radius) {
+    MeasuredModel model{.name = name, .edge = edge, .materialCount = 9, .voxels = {}};
+    model.voxels = gatherColumns(edge, [=](int x, int z, std::vector<PackedVoxel>& out) {
+        for (int y = 0; y < edge; ++y) {
+            const double d = distance(edge, x, y, z);
+            if (d > radius) continue;
             // Surface: some face neighbour is empty.
-            const bool surface = distance(kEdge, x + (x < kEdge / 2 ? -1 : 1), y, z) > kRadius ||
-                                 distance(kEdge, x, y + (y < kEdge / 2 ? -1 : 1), z) > kRadius ||
-                                 distance(kEdge, x, y, z + (z < kEdge / 2 ? -1 : 1)) > kRadius;
+            const bool surface = distance(edge, x + (x < edge / 2 ? -1 : 1), y, z) > radius ||
+                                 distance(edge, x, y + (y < edge / 2 ? -1 : 1), z) > radius ||
+                                 distance(edge, x, y, z + (z < edge / 2 ? -1 : 1)) > radius;
             out.push_back(packed(x, y, z, surface ? 1 + hashOf(x, y, z) % 8 : 0));
         }
     });
@@ -132,7 +130,8 @@ MeasuredModel makeTerrain() {
 }  // namespace
 
 MeasuredModel makeMeasuredModel(const std::string& name) {
-    if (name == "sphere") return makeSphere();
+    if (name == "sphere") return makeBall(name, 512, 142.0);
+    if (name == "tiny") return makeBall(name, 64, 20.0);
     if (name == "shell") return makeShell();
     if (name == "terrain") return makeTerrain();
     throw std::invalid_argument("no measured model is called " + name);

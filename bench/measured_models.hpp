@@ -5,6 +5,7 @@
 // Each is solid, thin or noisy: what merges well, what does not, and what has no structure in its materials.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <pfvox/voxel_model.hpp>
 #include <string>
@@ -19,7 +20,10 @@ struct MeasuredModel {
     std::vector<PackedVoxel> voxels;
 };
 
-/// Name is "sphere", "shell" or "terrain". The voxels come in an order that no octree uses: column by column.
+/// "tiny" is a ball of 33,000 voxels, for a test that the programs run.
+inline constexpr std::array kMeasuredModelNames{"sphere", "shell", "terrain", "tiny"};
+
+/// Name is one of kMeasuredModelNames. The voxels come in an order that no octree uses: column by column.
 MeasuredModel makeMeasuredModel(const std::string& name);
 
 }  // namespace pfvox::bench
