@@ -8,6 +8,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -48,8 +49,9 @@ class Measurements {
   public:
     void read(const char* path) {
         std::ifstream file(path);
-        for (const auto& run : nlohmann::json::parse(file).at("benchmarks")) {
-            if (run.value("run_type", "iteration") != "iteration") continue;
+        const nlohmann::json report = nlohmann::json::parse(file);
+        for (const auto& run : report.at("benchmarks")) {
+            if (run.value("run_type", std::string("iteration")) != "iteration") continue;
             if (run.value("error_occurred", false)) continue;
             const std::string name = nameOf(run.at("name").get<std::string>());
             for (const auto& [key, value] : run.items()) {
@@ -99,12 +101,12 @@ std::string ratio(double ours, std::optional<double> theirs) {
     return theirs && *theirs > 0 ? number(ours / *theirs) : "-";
 }
 
-/// Prints one row; returns whether the target holds.
-bool printRow(const Measurements& measured, const Targets& targets, std::size_t index) {
+/// Prints one row; returns whether the target holds, or nothing where this was not measured.
+std::optional<bool> printRow(const Measurements& measured, const Targets& targets, std::size_t index) {
     const Figure& figure = kFigures[index];
     const std::string model = targets.model;
     const auto ours = measured.find(model, figure.ours, figure.counter);
-    if (!ours) return true;  // not run
+    if (!ours) return std::nullopt;
     const auto openVdb = measured.find(model, figure.openVdb, figure.counter);
     const auto nanoVdb = measured.find(model, figure.nanoVdb, figure.counter);
     const double target = targets.values[index];
@@ -120,10 +122,15 @@ void printTable(const Measurements& measured) {
     std::puts("| model | figure | ours | target | holds | OpenVDB | ours/theirs | NanoVDB | ours/theirs |");
     std::puts("| --- | --- | ---: | ---: | --- | ---: | ---: | ---: | ---: |");
     int missed = 0;
+    int rows = 0;
     for (const Targets& targets : kTargets) {
-        for (std::size_t i = 0; i < std::size(kFigures); ++i)
-            missed += printRow(measured, targets, i) ? 0 : 1;
+        for (std::size_t i = 0; i < std::size(kFigures); ++i) {
+            const std::optional<bool> holds = printRow(measured, targets, i);
+            rows += holds.has_value() ? 1 : 0;
+            missed += holds == false ? 1 : 0;
+        }
     }
+    if (rows == 0) throw std::runtime_error("nothing of the three models was measured");
     std::printf(
         "\nTargets missed: %d. Build: OpenVDB Int32 on 2 threads, NanoVDB UInt8 on 1. "
         "Disk: OpenVDB blosc, NanoVDB zip.\n",
