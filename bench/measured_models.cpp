@@ -5,49 +5,14 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "noise.hpp"
+
 namespace pfvox::bench {
 
 namespace {
 
-std::uint32_t hash32(std::uint32_t x) {
-    x ^= x >> 16;
-    x *= 0x7feb352du;
-    x ^= x >> 15;
-    x *= 0x846ca68bu;
-    return x ^ (x >> 16);
-}
-
-std::uint32_t hashOf(int x, int y, int z) {
-    const auto u = [](int v) { return static_cast<std::uint32_t>(v); };
-    return hash32(u(x) * 73856093u ^ hash32(u(y) * 19349663u ^ hash32(u(z) + 83492791u)));
-}
-
-float valueNoise(float x, float z, std::uint32_t seed) {
-    const int xi = static_cast<int>(std::floor(x));
-    const int zi = static_cast<int>(std::floor(z));
-    const auto corner = [&](int a, int b) {
-        const std::uint32_t h = static_cast<std::uint32_t>(a) * 73856093u ^ static_cast<std::uint32_t>(b) * 19349663u;
-        return static_cast<float>(hash32(h ^ seed) >> 8) / 16777216.0f;
-    };
-    const auto smooth = [](float t) { return t * t * (3.0f - 2.0f * t); };
-    const float fx = smooth(x - static_cast<float>(xi));
-    const float fz = smooth(z - static_cast<float>(zi));
-    const float near = corner(xi, zi) + (corner(xi + 1, zi) - corner(xi, zi)) * fx;
-    const float far = corner(xi, zi + 1) + (corner(xi + 1, zi + 1) - corner(xi, zi + 1)) * fx;
-    return near * (1.0f - fz) + far * fz;
-}
-
 int terrainHeight(int x, int z) {
-    float height = 0.0f;
-    float amplitude = 260.0f;
-    float wavelength = 512.0f;
-    for (std::uint32_t octave = 0; octave < 7; ++octave) {
-        height += amplitude * valueNoise(static_cast<float>(x) / wavelength, static_cast<float>(z) / wavelength,
-                                         hash32(octave + 17));
-        amplitude *= 0.5f;
-        wavelength *= 0.5f;
-    }
-    return 500 + static_cast<int>(height);
+    return 500 + static_cast<int>(fractalNoise(x, z, 260.0f, 512.0f));
 }
 
 /// Runs makeColumn(x, z, out) for every column, in parallel over z, and joins the results in the order of z.
@@ -76,18 +41,16 @@ double distance(int edge, int x, int y, int z) {
     return std::sqrt((x - c) * (x - c) + (y - c) * (y - c) + (z - c) * (z - c));
 }
 
-MeasuredModel makeSphere() {
-    constexpr int kEdge = 512;
-    constexpr double kRadius = 142.0;
-    MeasuredModel model{.name = "sphere", .edge = kEdge, .materialCount = 9, .voxels = {}};
-    model.voxels = gatherColumns(kEdge, [](int x, int z, std::vector<PackedVoxel>& out) {
-        for (int y = 0; y < kEdge; ++y) {
-            const double d = distance(kEdge, x, y, z);
-            if (d > kRadius) continue;
+MeasuredModel makeBall(const std::string& name, int edge, double radius) {
+    MeasuredModel model{.name = name, .edge = edge, .materialCount = 9, .voxels = {}};
+    model.voxels = gatherColumns(edge, [=](int x, int z, std::vector<PackedVoxel>& out) {
+        for (int y = 0; y < edge; ++y) {
+            const double d = distance(edge, x, y, z);
+            if (d > radius) continue;
             // Surface: some face neighbour is empty.
-            const bool surface = distance(kEdge, x + (x < kEdge / 2 ? -1 : 1), y, z) > kRadius ||
-                                 distance(kEdge, x, y + (y < kEdge / 2 ? -1 : 1), z) > kRadius ||
-                                 distance(kEdge, x, y, z + (z < kEdge / 2 ? -1 : 1)) > kRadius;
+            const bool surface = distance(edge, x + (x < edge / 2 ? -1 : 1), y, z) > radius ||
+                                 distance(edge, x, y + (y < edge / 2 ? -1 : 1), z) > radius ||
+                                 distance(edge, x, y, z + (z < edge / 2 ? -1 : 1)) > radius;
             out.push_back(packed(x, y, z, surface ? 1 + hashOf(x, y, z) % 8 : 0));
         }
     });
@@ -122,7 +85,8 @@ MeasuredModel makeTerrain() {
     model.voxels = gatherColumns(kEdge, [](int x, int z, std::vector<PackedVoxel>& out) {
         const int height = terrainHeight(x, z);
         const std::uint32_t patch = hashOf(x >> 6, 0, z >> 6) % 16;
-        for (int y = height - 2; y <= height; ++y) out.push_back(packed(x, y, z, 4 * patch + hashOf(x, y, z) % 4));
+        for (int y = height - 2; y <= height; ++y)
+            out.push_back(packed(x, y, z, 4 * patch + hashOf(x, y, z) % 4));
     });
     return model;
 }
@@ -130,7 +94,8 @@ MeasuredModel makeTerrain() {
 }  // namespace
 
 MeasuredModel makeMeasuredModel(const std::string& name) {
-    if (name == "sphere") return makeSphere();
+    if (name == "sphere") return makeBall(name, 512, 142.0);
+    if (name == "tiny") return makeBall(name, 64, 20.0);
     if (name == "shell") return makeShell();
     if (name == "terrain") return makeTerrain();
     throw std::invalid_argument("no measured model is called " + name);

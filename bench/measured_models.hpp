@@ -1,10 +1,11 @@
 // The three models on which pfvox is measured (docs/performance.md):
-//     sphere   solid ball of radius 142 in 512^3, 8 random surface materials over one interior   11,993,960 voxels
-//     shell    |distance - 977| < 0.5 in 2048^3, 16 materials in 8^3 blocks                      12,004,656 voxels
-//     terrain  2048^2 columns, 3 thick, fractal noise height, 64 materials (2 random bits each)  12,582,912 voxels
+//     sphere   solid ball of radius 142 in 512^3, 8 random surface materials over one interior   11,993,960
+//     voxels shell    |distance - 977| < 0.5 in 2048^3, 16 materials in 8^3 blocks 12,004,656 voxels terrain
+//     2048^2 columns, 3 thick, fractal noise height, 64 materials (2 random bits each)  12,582,912 voxels
 // Each is solid, thin or noisy: what merges well, what does not, and what has no structure in its materials.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <pfvox/voxel_model.hpp>
 #include <string>
@@ -12,21 +13,17 @@
 
 namespace pfvox::bench {
 
-/// A voxel as a list of it comes from a source: 8 bytes.
-struct PackedVoxel {
-    std::uint16_t x, y, z;
-    MaterialIndex material;
-};
-static_assert(sizeof(PackedVoxel) == 8);
-
 struct MeasuredModel {
     std::string name;
-    int edge = 0;           ///< of the cube in which it lies
+    int edge = 0;  ///< of the cube in which it lies
     int materialCount = 0;
     std::vector<PackedVoxel> voxels;
 };
 
-/// Name is "sphere", "shell" or "terrain". The voxels come in an order that no octree uses: column by column.
+/// "tiny" is a ball of 33,000 voxels, for a test that the programs run.
+inline constexpr std::array kMeasuredModelNames{"sphere", "shell", "terrain", "tiny"};
+
+/// Name is one of kMeasuredModelNames. The voxels come in an order that no octree uses: column by column.
 MeasuredModel makeMeasuredModel(const std::string& name);
 
 }  // namespace pfvox::bench

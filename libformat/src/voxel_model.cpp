@@ -1,7 +1,11 @@
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <bit>
 #include <pfvox/assert.hpp>
 #include <pfvox/voxel_model.hpp>
+
+#include "voxel_partition.hpp"
 
 namespace pfvox {
 
@@ -23,6 +27,9 @@ constexpr std::uint32_t voxelMortonOf(glm::ivec3 voxel) {
                          static_cast<std::uint32_t>(voxel.z) & 7u});
 }
 
+/// Cells in one word of the mask of used cells.
+constexpr std::size_t kCellsPerBlock = 64;
+
 /// Tight box of a brick's voxels in brick coordinates.
 VoxelBox brickBounds(const Brick& brick) {
     VoxelBox box;
@@ -39,26 +46,19 @@ VoxelBox brickBounds(const Brick& brick) {
 
 // --- VoxelRegion ---
 
-VoxelRegion::Cell VoxelRegion::cell(std::uint32_t cellMorton) const {
-    if (uniform_) return {.brick = nullptr, .material = uniform_};
-    if (cellMorton >= table_.size()) return {};
-    const std::uint32_t entry = table_[cellMorton];
-    if (entry == kEmpty) return {};
-    if ((entry & kUniformFlag) != 0)
-        return {.brick = nullptr, .material = static_cast<MaterialIndex>(entry & 0xffffu)};
-    return {.brick = &brick(entry), .material = std::nullopt};
-}
-
 std::uint32_t& VoxelRegion::entryAt(std::uint32_t cellMorton) {
     if (uniform_) {
         table_.assign(kRegionCells, kUniformFlag | *uniform_);
+        used_.assign(kRegionCells / kCellsPerBlock, ~std::uint64_t{0});
         uniform_.reset();
     }
     if (cellMorton >= table_.size()) {
         std::size_t size = std::max<std::size_t>(table_.size(), 1);
         while (size <= cellMorton) size *= 8;
         table_.resize(size, kEmpty);
+        used_.resize((size + kCellsPerBlock - 1) / kCellsPerBlock, 0);
     }
+    used_[cellMorton / kCellsPerBlock] |= std::uint64_t{1} << (cellMorton % kCellsPerBlock);
     return table_[cellMorton];
 }
 
@@ -86,14 +86,43 @@ void VoxelRegion::fillCell(std::uint32_t cellMorton, MaterialIndex material) {
 
 void VoxelRegion::fill(MaterialIndex material) {
     table_.clear();
+    used_.clear();
     chunks_.clear();
     brickCount_ = 0;
     uniform_ = material;
 }
 
+void VoxelRegion::insert(std::span<const RegionVoxel> voxels) {
+    Brick* brick = nullptr;
+    std::uint32_t cell = kEmpty;
+    for (const RegionVoxel& voxel : voxels) {
+        // Voxels come in runs, so most of them go to the brick of the one before.
+        if (voxel.address / kBrickVoxels != cell) {
+            cell = voxel.address / kBrickVoxels;
+            const std::uint32_t entry = cell < table_.size() ? table_[cell] : kEmpty;
+            brick =
+                (entry & kUniformFlag) == 0 ? &this->brick(entry) : &brickAt(cell);  // kEmpty has the flag
+        }
+        brick->set(voxel.address % kBrickVoxels, voxel.material);
+    }
+}
+
+void VoxelRegion::reset(glm::ivec3 coord) {
+    coord_ = coord;
+    uniform_.reset();
+    for (std::size_t block = 0; block < used_.size(); ++block) {
+        if (used_[block] == 0) continue;
+        const std::size_t first = block * kCellsPerBlock;
+        const std::size_t count = std::min<std::size_t>(kCellsPerBlock, table_.size() - first);
+        std::fill_n(table_.begin() + static_cast<std::ptrdiff_t>(first), count, kEmpty);
+        used_[block] = 0;
+    }
+    brickCount_ = 0;  // the chunks stay
+}
+
 std::uint64_t VoxelRegion::memoryBytes() const {
     return sizeof(*this) + table_.capacity() * sizeof(std::uint32_t) +
-           chunks_.size() * kChunkBricks * sizeof(Brick);
+           used_.capacity() * sizeof(std::uint64_t) + chunks_.size() * kChunkBricks * sizeof(Brick);
 }
 
 // --- VoxelModel ---
@@ -117,6 +146,15 @@ VoxelRegion& VoxelModel::regionAt(glm::ivec3 regionCoord) {
     if (isNew) regions_.push_back(std::make_unique<VoxelRegion>(regionCoord));
     last_ = regions_[entry->second].get();
     return *last_;
+}
+
+void VoxelModel::insert(std::span<const PackedVoxel> voxels, glm::ivec3 origin) {
+    const VoxelPartition partition(voxels, origin);
+    std::vector<VoxelRegion*> targets;
+    for (const auto& pieces : partition.parts()) targets.push_back(&regionAt(pieces.front().regionCoord));
+    tbb::parallel_for(std::size_t{0}, targets.size(), [&](std::size_t i) {
+        for (const VoxelPartition::Piece& piece : partition.parts()[i]) targets[i]->insert(piece.voxels);
+    });
 }
 
 void VoxelModel::set(glm::ivec3 voxel, MaterialIndex material) {

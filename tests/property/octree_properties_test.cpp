@@ -1,5 +1,5 @@
-// What must hold for every octree: each voxel keeps its material, nothing that could merge is left apart, no value is
-// stored twice on a path, and a file gives back what went in.
+// What must hold for every octree: each voxel keeps its material, nothing that could merge is left apart, no
+// value is stored twice on a path, and a file gives back what went in.
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
@@ -8,6 +8,7 @@
 #include <bit>
 #include <pfvox/octree.hpp>
 #include <pfvox/pf_vox.hpp>
+#include <random>
 
 #include "support/voxel_models.hpp"
 
@@ -40,7 +41,8 @@ void expectSameVoxels(const VoxelModel& expected, const OctreeModel& octree) {
         for (std::uint32_t c = 0; c < static_cast<std::uint32_t>(kRegionCells); ++c) {
             const auto cell = region->cell(c);
             if (cell.empty()) continue;
-            const glm::ivec3 corner = region->coord() * kRegionEdge + glm::ivec3{mortonDecode(c)} * kBrickEdge;
+            const glm::ivec3 corner =
+                region->coord() * kRegionEdge + glm::ivec3{mortonDecode(c)} * kBrickEdge;
             const std::uint32_t step = cell.brick != nullptr ? 1 : 73;  // tiles: a sample is enough
             for (std::uint32_t m = 0; m < kBrickVoxels; m += step) {
                 const glm::ivec3 p = corner + glm::ivec3{mortonDecode(m)};
@@ -64,7 +66,8 @@ TEST(OctreeProperties, EveryVoxelKeepsItsMaterial) {
 }
 
 /// Leaves of the exactly minimised octree over the cube, by asking for every voxel: slow and obvious.
-std::uint64_t countLeaves(const VoxelModel& model, glm::ivec3 corner, int edge, std::optional<MaterialIndex>& uniform) {
+std::uint64_t countLeaves(const VoxelModel& model, glm::ivec3 corner, int edge,
+                          std::optional<MaterialIndex>& uniform) {
     if (edge == 1) {
         uniform = model.at(corner);
         return uniform ? 1 : 0;
@@ -74,7 +77,8 @@ std::uint64_t countLeaves(const VoxelModel& model, glm::ivec3 corner, int edge, 
     std::optional<MaterialIndex> first;
     for (int k = 0; k < 8; ++k) {
         std::optional<MaterialIndex> child;
-        leaves += countLeaves(model, corner + glm::ivec3{k & 1, (k >> 1) & 1, k >> 2} * (edge / 2), edge / 2, child);
+        leaves += countLeaves(model, corner + glm::ivec3{k & 1, (k >> 1) & 1, k >> 2} * (edge / 2), edge / 2,
+                              child);
         if (k == 0) first = child;
         merge = merge && child && child == first;
     }
@@ -104,8 +108,8 @@ TEST(OctreeProperties, ValuesAreHoistedAsHighAsTheyGo) {
     const OctreeAsset built = buildStandard();
     for (const OctreeModel& model : built.models) {
         for (const OctreeRegion& region : model.regions) {
-            // No node may have all its values equal with everything below it valued here, unless it is the root:
-            // then its parent would hold the one value.
+            // No node may have all its values equal with everything below it valued here, unless it is the
+            // root: then its parent would hold the one value.
             for (std::size_t i = 1; i < region.tree.nodes.size(); ++i) {
                 const std::uint32_t valid = node::validMask(region.tree.nodes[i]);
                 const std::uint32_t mask = region.lookup[i] & 0xffu;
@@ -113,7 +117,8 @@ TEST(OctreeProperties, ValuesAreHoistedAsHighAsTheyGo) {
                 const std::uint32_t first = region.lookup[i] >> 8;
                 bool allEqual = true;
                 for (int k = 1; k < std::popcount(mask); ++k) {
-                    allEqual = allEqual && region.value(first + static_cast<std::uint32_t>(k)) == region.value(first);
+                    allEqual = allEqual &&
+                               region.value(first + static_cast<std::uint32_t>(k)) == region.value(first);
                 }
                 EXPECT_FALSE(allEqual) << "node " << i;
             }
@@ -128,7 +133,8 @@ TEST(OctreeProperties, NodesAreReachedOnceAndForward) {
             std::vector<int> reached(region.tree.nodes.size(), 0);
             reached[0] = 1;
             for (std::uint32_t i = 0; i < region.tree.nodes.size(); ++i) {
-                const auto inner = static_cast<std::uint32_t>(std::popcount(node::innerMask(region.tree.nodes[i])));
+                const auto inner =
+                    static_cast<std::uint32_t>(std::popcount(node::innerMask(region.tree.nodes[i])));
                 if (inner == 0) continue;
                 const std::uint32_t first = region.tree.firstChild(i);
                 ASSERT_GT(first, i);
@@ -179,6 +185,49 @@ void expectEqual(const OctreeRegion& a, const OctreeRegion& b) {
     EXPECT_EQ(a.palette, b.palette);
     EXPECT_EQ(a.voxelCount, b.voxelCount);
     EXPECT_EQ(a.bounds, b.bounds);
+}
+
+TEST(OctreeFromList, EqualsTheOctreeOfTheModel) {
+    std::mt19937 random(11);
+    for (const std::uint32_t spread : {1u, 8u, 200u, 900u, 30000u}) {
+        for (const glm::ivec3 origin : {glm::ivec3{0}, glm::ivec3{-333, 12, 5000}}) {
+            SCOPED_TRACE(spread);
+            std::vector<PackedVoxel> list(20000);
+            for (PackedVoxel& v : list) {
+                const auto coordinate = [&](std::uint32_t range) {
+                    return static_cast<std::uint16_t>(random() % range);
+                };
+                v = {coordinate(spread), coordinate(spread / 2 + 1), coordinate(spread), coordinate(4)};
+            }
+            std::vector<VoxelModel> models(1);
+            for (const PackedVoxel& v : list) models[0].set(origin + glm::ivec3{v.x, v.y, v.z}, v.material);
+            const OctreeAsset expected = build(test::assetOf(std::move(models)));
+            const auto built =
+                buildOctree({.voxels = list, .origin = origin}, expected.materials.size(), Limits{});
+            ASSERT_TRUE(built) << describe(built.error());
+            EXPECT_EQ(built->topTree.nodes, expected.models[0].topTree.nodes);
+            EXPECT_EQ(built->originVoxels, expected.models[0].originVoxels);
+            EXPECT_EQ(built->depth, expected.models[0].depth);
+            ASSERT_EQ(built->regions.size(), expected.models[0].regions.size());
+            for (std::size_t r = 0; r < built->regions.size(); ++r) {
+                expectEqual(built->regions[r], expected.models[0].regions[r]);
+            }
+        }
+    }
+}
+
+TEST(OctreeFromList, AnEmptyListIsAnEmptyModel) {
+    const auto built = buildOctree({}, 0, Limits{});
+    ASSERT_TRUE(built);
+    EXPECT_TRUE(built->regions.empty());
+    EXPECT_EQ(built->voxelCount, 0u);
+}
+
+TEST(OctreeFromList, MaterialThatDoesNotExistIsRefused) {
+    const std::vector<PackedVoxel> list{{1, 2, 3, 7}};
+    const auto built = buildOctree({.voxels = list}, 7, Limits{});
+    ASSERT_FALSE(built);
+    EXPECT_EQ(built.error().code, ErrorCode::BadReference);
 }
 
 TEST(PfVoxRoundTrip, DecodedAssetEqualsEncodedAsset) {

@@ -29,6 +29,8 @@
 #include <pfvox/error.hpp>
 #include <pfvox/limits.hpp>
 #include <pfvox/voxel_model.hpp>
+#include <span>
+#include <string>
 #include <vector>
 
 namespace pfvox {
@@ -118,6 +120,18 @@ struct OctreeAsset : AssetInfo {
 /// threads. Errors: LimitExceeded (depth, regions, materials), BadReference (a voxel's material does not
 /// exist).
 Result<OctreeAsset> buildOctrees(const VoxelAsset& asset, const Limits& limits);
+
+/// A model as a list of voxels: what generators and simulations have.
+struct VoxelList {
+    std::span<const PackedVoxel> voxels;  ///< in any order; of several in one place the last one wins
+    glm::ivec3 origin{0};                 ///< the model voxel that (0, 0, 0) of the list is
+    std::string name = {};
+};
+
+/// Builds one octree straight from a list. The result is that of VoxelModel::insert() and buildOctrees(), but
+/// bricks exist for a few regions at a time only, which takes less time and a fraction of the memory. Errors
+/// as there.
+Result<OctreeModel> buildOctree(const VoxelList& list, std::size_t materialCount, const Limits& limits);
 
 /// Every voxel of the octree back in a sparse grid; leaves larger than a voxel become tiles.
 VoxelModel toVoxelModel(const OctreeModel& model);

@@ -7,7 +7,7 @@
 // one onto OpenVDB's leaf nodes and tiles; other importers scatter voxels into it. Bits and materials of a
 // brick are in Morton order, so that the bytes of its mask are the child masks of the octree's lowest nodes.
 //
-// A VoxelModel is built by one thread; several threads may read it.
+// A VoxelModel is changed by one thread at a time; several threads may read it.
 #pragma once
 
 #include <array>
@@ -16,6 +16,7 @@
 #include <optional>
 #include <pfvox/asset.hpp>
 #include <pfvox/math.hpp>
+#include <span>
 #include <unordered_map>
 #include <vector>
 
@@ -45,6 +46,19 @@ struct Brick {
     void clear(std::uint32_t morton) { occupancy[morton >> 6] &= ~(std::uint64_t{1} << (morton & 63u)); }
 };
 
+/// A voxel of a list: 8 bytes. Where the list begins is told beside it.
+struct PackedVoxel {
+    std::uint16_t x, y, z;
+    MaterialIndex material;
+};
+
+/// A voxel in a region. Address: the Morton code of its coordinates in the region; bits 9 to 23 are the code
+/// of the cell, bits 0 to 8 that in the brick.
+struct RegionVoxel {
+    std::uint32_t address;
+    MaterialIndex material;
+};
+
 /// 256^3 voxels: see the head of this file.
 class VoxelRegion {
   public:
@@ -62,12 +76,26 @@ class VoxelRegion {
         std::optional<MaterialIndex> material;  ///< set: one solid cube
         bool empty() const { return brick == nullptr && !material; }
     };
-    Cell cell(std::uint32_t cellMorton) const;
+    Cell cell(std::uint32_t cellMorton) const {
+        if (uniform_) return {.brick = nullptr, .material = uniform_};
+        if (cellMorton >= table_.size()) return {};
+        const std::uint32_t entry = table_[cellMorton];
+        if (entry == kEmpty) return {};
+        if ((entry & kUniformFlag) != 0)
+            return {.brick = nullptr, .material = static_cast<MaterialIndex>(entry & 0xffffu)};
+        return {.brick = &brick(entry), .material = std::nullopt};
+    }
 
-    /// Cells with this Morton code and above hold nothing of their own: walks may stop here. Morton order puts a small
-    /// model in the low corner into the first few codes. kRegionCells for a uniform region.
+    /// Bit i = whether cell 64 * block + i holds something of its own (4^3 cells are a block; a brick that
+    /// was cleared to nothing counts). Most cells of most regions are empty, so walks that ask for each of
+    /// them spend their time on nothing. Not for uniform regions.
+    std::uint64_t usedCells(std::uint32_t block) const { return block < used_.size() ? used_[block] : 0; }
+
+    /// Cells with this Morton code and above hold nothing of their own: walks may stop here. Morton order
+    /// puts a small model in the low corner into the first few codes. kRegionCells for a uniform region.
     std::uint32_t cellEnd() const {
-        return uniform_ ? static_cast<std::uint32_t>(kRegionCells) : static_cast<std::uint32_t>(table_.size());
+        return uniform_ ? static_cast<std::uint32_t>(kRegionCells)
+                        : static_cast<std::uint32_t>(table_.size());
     }
 
     /// The brick at this cell for writing; an empty or uniform cell becomes a brick first.
@@ -76,6 +104,10 @@ class VoxelRegion {
     void fillCell(std::uint32_t cellMorton, MaterialIndex material);
     /// Makes the whole region one solid cube, replacing what it held.
     void fill(MaterialIndex material);
+    /// Inserts or replaces voxels in the order given.
+    void insert(std::span<const RegionVoxel> voxels);
+    /// Empties the region and moves it elsewhere; memory is kept for what comes next.
+    void reset(glm::ivec3 coord);
 
     std::size_t brickCount() const { return brickCount_; }
     std::uint64_t memoryBytes() const;
@@ -93,7 +125,9 @@ class VoxelRegion {
 
     glm::ivec3 coord_;
     std::optional<MaterialIndex> uniform_;
-    std::vector<std::uint32_t> table_;  ///< by cell Morton code; a power of eight long, cells behind are empty
+    std::vector<std::uint32_t>
+        table_;                        ///< by cell Morton code; a power of eight long, cells behind are empty
+    std::vector<std::uint64_t> used_;  ///< a bit for each entry of table_ that is not empty
     std::vector<std::unique_ptr<Brick[]>> chunks_;
     std::size_t brickCount_ = 0;
 };
@@ -105,6 +139,10 @@ class VoxelModel {
 
     /// Inserts or replaces one voxel.
     void set(glm::ivec3 voxel, MaterialIndex material);
+    /// Inserts or replaces many voxels, given relative to `origin`, in any order; of several in one place the
+    /// last one wins. Regions are filled in parallel in the calling TBB arena: much faster than set() for
+    /// long lists.
+    void insert(std::span<const PackedVoxel> voxels, glm::ivec3 origin = glm::ivec3{0});
     /// Empties one voxel; returns whether it was occupied.
     bool clear(glm::ivec3 voxel);
     /// The voxel's material, or nothing where it is empty.

@@ -1,4 +1,4 @@
-// buildOctrees: every region of every model is one task; the top trees follow.
+// buildOctrees and buildOctree: every region of every model is one task; the top trees follow.
 #include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
@@ -10,14 +10,22 @@
 #include <span>
 
 #include "octree/region_builder.hpp"
+#include "voxel_partition.hpp"
 
 namespace pfvox {
 
 namespace {
 
+/// The content of one region: bricks, or the voxels to fill some with.
+struct RegionSource {
+    glm::ivec3 coord;
+    const VoxelRegion* bricks = nullptr;
+    std::span<const VoxelPartition::Piece> pieces = {};
+};
+
 /// One region to build and where the result goes.
 struct RegionTask {
-    const VoxelRegion* source;
+    RegionSource source;
     OctreeRegion* target;
     octree::RegionBuilder::Extent extent;
 };
@@ -32,18 +40,30 @@ std::uint64_t morton63(glm::uvec3 p) {
     return code;
 }
 
-/// The model's regions that hold voxels, in Morton order from `minCoord`.
-std::vector<const VoxelRegion*> sortedRegions(const VoxelModel& model, glm::ivec3& minCoord) {
-    std::vector<const VoxelRegion*> regions;
-    minCoord = glm::ivec3{std::numeric_limits<int>::max()};
+/// The model's regions that hold voxels.
+std::vector<RegionSource> sourcesOf(const VoxelModel& model) {
+    std::vector<RegionSource> sources;
     for (const auto& region : model.regions()) {
-        if (octree::isEmpty(*region)) continue;
-        regions.push_back(region.get());
-        minCoord = glm::min(minCoord, region->coord());
+        if (!octree::isEmpty(*region)) sources.push_back({.coord = region->coord(), .bricks = region.get()});
     }
+    return sources;
+}
+
+std::vector<RegionSource> sourcesOf(const VoxelPartition& partition) {
+    std::vector<RegionSource> sources;
+    for (const auto& pieces : partition.parts()) {
+        sources.push_back({.coord = pieces.front().regionCoord, .pieces = pieces});
+    }
+    return sources;
+}
+
+/// Sorts by Morton code from the lowest coordinates, which are returned.
+glm::ivec3 sortRegions(std::vector<RegionSource>& regions) {
+    glm::ivec3 minCoord{std::numeric_limits<int>::max()};
+    for (const RegionSource& region : regions) minCoord = glm::min(minCoord, region.coord);
     std::ranges::sort(regions, {},
-                      [&](const VoxelRegion* r) { return morton63(glm::uvec3{r->coord() - minCoord}); });
-    return regions;
+                      [&](const RegionSource& r) { return morton63(glm::uvec3{r.coord - minCoord}); });
+    return minCoord;
 }
 
 /// Builds the tree over regions[first, last), which all lie in the cube of this level; leaves carry no value.
@@ -63,12 +83,11 @@ octree::Slot buildTop(octree::NodeWriter& writer, std::span<const std::uint64_t>
     return writer.combine(children);
 }
 
-Result<NodeTree> buildTopTree(const std::vector<const VoxelRegion*>& regions, glm::ivec3 minCoord,
+Result<NodeTree> buildTopTree(std::span<const RegionSource> regions, glm::ivec3 minCoord,
                               std::uint32_t depth) {
     std::vector<std::uint64_t> codes;
     codes.reserve(regions.size());
-    for (const VoxelRegion* region : regions)
-        codes.push_back(morton63(glm::uvec3{region->coord() - minCoord}));
+    for (const RegionSource& region : regions) codes.push_back(morton63(glm::uvec3{region.coord - minCoord}));
     octree::NodeWriter writer;
     writer.finish(buildTop(writer, codes, depth));
     NodeTree tree;
@@ -78,17 +97,16 @@ Result<NodeTree> buildTopTree(const std::vector<const VoxelRegion*>& regions, gl
 }
 
 /// Everything of a model but the content of its regions, for which it adds tasks.
-Result<OctreeModel> planModel(const VoxelModel& source, const Limits& limits,
-                              std::vector<RegionTask>& tasks) {
+Result<OctreeModel> planModel(const std::string& name, std::vector<RegionSource> regions,
+                              const Limits& limits, std::vector<RegionTask>& tasks) {
     OctreeModel model;
-    model.name = source.name;
-    glm::ivec3 minCoord;
-    const std::vector<const VoxelRegion*> regions = sortedRegions(source, minCoord);
+    model.name = name;
+    const glm::ivec3 minCoord = sortRegions(regions);
     if (regions.size() > limits.maxRegions) {
         return fail(ErrorCode::LimitExceeded,
                     fmt::format("model '{}' has {} regions of 256^3 voxels, more than "
                                 "maxRegions = {}",
-                                source.name, regions.size(), limits.maxRegions));
+                                name, regions.size(), limits.maxRegions));
     }
     model.regions.resize(regions.size());
     using Extent = octree::RegionBuilder::Extent;
@@ -97,8 +115,8 @@ Result<OctreeModel> planModel(const VoxelModel& source, const Limits& limits,
     if (regions.size() <= 1) return model;
 
     std::uint64_t edgeRegions = 0;
-    for (const VoxelRegion* region : regions) {
-        const glm::i64vec3 offset = glm::i64vec3{region->coord()} - glm::i64vec3{minCoord};
+    for (const RegionSource& region : regions) {
+        const glm::i64vec3 offset = glm::i64vec3{region.coord} - glm::i64vec3{minCoord};
         edgeRegions =
             std::max({edgeRegions, static_cast<std::uint64_t>(offset.x) + 1,
                       static_cast<std::uint64_t>(offset.y) + 1, static_cast<std::uint64_t>(offset.z) + 1});
@@ -108,8 +126,8 @@ Result<OctreeModel> planModel(const VoxelModel& source, const Limits& limits,
     if (model.depth > limits.maxModelDepth) {
         return fail(
             ErrorCode::LimitExceeded,
-            fmt::format("model '{}' is {} voxels wide: {} octree levels, more than maxModelDepth = {}",
-                        source.name, edgeRegions * kRegionEdge, model.depth, limits.maxModelDepth));
+            fmt::format("model '{}' is {} voxels wide: {} octree levels, more than maxModelDepth = {}", name,
+                        edgeRegions * kRegionEdge, model.depth, limits.maxModelDepth));
     }
     model.originVoxels = minCoord * kRegionEdge;
     PFVOX_TRY(NodeTree, topTree, buildTopTree(regions, minCoord, topDepth));
@@ -118,12 +136,29 @@ Result<OctreeModel> planModel(const VoxelModel& source, const Limits& limits,
     return model;
 }
 
+/// What a thread builds regions with. Voxels of a list become bricks in one region that is used again and
+/// again, so that its bricks stay in the cache and cost no fresh memory.
+class RegionWorker {
+  public:
+    Result<OctreeRegion> build(const RegionTask& task, std::size_t materialCount) {
+        const RegionSource& source = task.source;
+        if (source.bricks != nullptr) return builder_.build(*source.bricks, task.extent, materialCount);
+        bricks_.reset(source.coord);
+        for (const VoxelPartition::Piece& piece : source.pieces) bricks_.insert(piece.voxels);
+        return builder_.build(bricks_, task.extent, materialCount);
+    }
+
+  private:
+    octree::RegionBuilder builder_;
+    VoxelRegion bricks_{glm::ivec3{0}};
+};
+
 Result<void> runTasks(const std::vector<RegionTask>& tasks, std::size_t materialCount) {
-    tbb::enumerable_thread_specific<octree::RegionBuilder> builders;
+    tbb::enumerable_thread_specific<RegionWorker> workers;
     std::vector<std::optional<Error>> errors(tasks.size());
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, tasks.size(), 1), [&](const auto& range) {
         for (std::size_t i = range.begin(); i < range.end(); ++i) {
-            auto region = builders.local().build(*tasks[i].source, tasks[i].extent, materialCount);
+            auto region = workers.local().build(tasks[i], materialCount);
             if (region) {
                 *tasks[i].target = *std::move(region);
             } else {
@@ -148,7 +183,21 @@ void summarise(OctreeModel& model) {
     }
 }
 
+Result<OctreeModel> buildModel(const std::string& name, std::vector<RegionSource> sources,
+                               std::size_t materialCount, const Limits& limits) {
+    std::vector<RegionTask> tasks;
+    PFVOX_TRY(OctreeModel, model, planModel(name, std::move(sources), limits, tasks));
+    PFVOX_CHECK(runTasks(tasks, materialCount));
+    summarise(model);
+    return model;
+}
+
 }  // namespace
+
+Result<OctreeModel> buildOctree(const VoxelList& list, std::size_t materialCount, const Limits& limits) {
+    const VoxelPartition partition(list.voxels, list.origin);
+    return buildModel(list.name, sourcesOf(partition), materialCount, limits);
+}
 
 Result<OctreeAsset> buildOctrees(const VoxelAsset& asset, const Limits& limits) {
     if (asset.materials.size() > limits.maxMaterials) {
@@ -159,7 +208,7 @@ Result<OctreeAsset> buildOctrees(const VoxelAsset& asset, const Limits& limits) 
     built.models.reserve(asset.models.size());
     std::vector<RegionTask> tasks;
     for (const VoxelModel& source : asset.models) {
-        PFVOX_TRY(OctreeModel, model, planModel(source, limits, tasks));
+        PFVOX_TRY(OctreeModel, model, planModel(source.name, sourcesOf(source), limits, tasks));
         built.models.push_back(std::move(model));  // moving keeps the regions where the tasks point
     }
     PFVOX_CHECK(runTasks(tasks, asset.materials.size()));

@@ -2,8 +2,8 @@
 //
 // Final order is depth-first by sibling blocks, so a node's children lie behind it. Writing that order
 // backwards means that everything a descriptor points at is already written when the descriptor is: no
-// fix-ups, no second traversal. finish() turns the sequence round and makes pointers, far table, lookup words
-// and the palette in one linear pass.
+// fix-ups, no second traversal. writeTree() and writeAttributes() turn the sequence round and make pointers,
+// far table, lookup words and the palette in linear passes.
 #pragma once
 
 #include <array>
@@ -11,6 +11,8 @@
 #include <pfvox/error.hpp>
 #include <pfvox/octree.hpp>
 #include <vector>
+
+#include "octree/grow_buffer.hpp"
 
 namespace pfvox::octree {
 
@@ -38,6 +40,10 @@ class NodeWriter {
     /// slot 7 to slot 0.
     Slot combine(const std::array<Slot, 8>& children);
 
+    /// The same for 4^3 voxels with their mask and materials in Morton order. Three nodes of four are made
+    /// here.
+    Slot combineVoxels(std::uint64_t occupancy, const MaterialIndex* materials);
+
     /// Ends the tree with its root, which must not be Empty. A root that is one leaf is written as a node of
     /// eight.
     void finish(const Slot& root);
@@ -60,11 +66,12 @@ class NodeWriter {
         std::uint8_t leafMask;
         std::uint8_t validMask;
         std::uint8_t valueMask;
+        std::uint8_t valueCount;
     };
     void push(const Slot& node, std::uint8_t valueMask);
 
-    std::vector<Record> records_;
-    std::vector<MaterialIndex> values_;
+    GrowBuffer<Record> records_;
+    GrowBuffer<MaterialIndex> values_;
 };
 
 }  // namespace pfvox::octree

@@ -4,53 +4,15 @@
 #include <array>
 #include <bit>
 
-#if defined(__SSE2__)
-#include <emmintrin.h>
-#endif
+#include "octree/lanes.hpp"
 
 namespace pfvox::octree {
 
 namespace {
 
-/// Levels of the cell table: 32^3 cells are 5 levels of octree above the bricks.
-constexpr std::uint32_t kCellLevels = kRegionEdgeLog2 - kBrickEdgeLog2;
-
-/// Bit i = whether materials[i] equals the reference, for eight materials.
-std::uint8_t equalLanes(const MaterialIndex* materials, MaterialIndex reference) {
-#if defined(__SSE2__)
-    const __m128i lanes = _mm_loadu_si128(reinterpret_cast<const __m128i*>(materials));
-    const __m128i equal = _mm_cmpeq_epi16(lanes, _mm_set1_epi16(static_cast<short>(reference)));
-    return static_cast<std::uint8_t>(_mm_movemask_epi8(_mm_packs_epi16(equal, _mm_setzero_si128())));
-#else
-    std::uint8_t mask = 0;
-    for (unsigned i = 0; i < 8; ++i) mask |= static_cast<std::uint8_t>((materials[i] == reference) << i);
-    return mask;
-#endif
-}
-
-bool allEqual(const MaterialIndex* materials, std::size_t count) {
-    const MaterialIndex reference = materials[0];
-    for (std::size_t i = 0; i < count; i += 8) {
-        if (equalLanes(materials + i, reference) != 0xff) return false;
-    }
-    return true;
-}
-
-/// The 2^3 voxels of one mask byte.
-Slot buildOctet(std::uint8_t mask, const MaterialIndex* materials) {
-    if (mask == 0) return {};
-    const MaterialIndex reference = materials[std::countr_zero(mask)];
-    const bool uniform = (equalLanes(materials, reference) & mask) == mask;
-    if (uniform && mask == 0xff) return Slot::leaf(reference);
-    Slot slot{.kind = Slot::Kind::Inner,
-              .uniform = uniform,
-              .material = reference,
-              .validMask = mask,
-              .leafMask = mask,
-              .valueMask = mask};
-    std::copy_n(materials, 8, slot.values.begin());
-    return slot;
-}
+/// A block of 4^3 cells has its mask of used cells in one word; three levels of octree are above the blocks.
+constexpr std::uint32_t kBlockLevels = kRegionEdgeLog2 - kBrickEdgeLog2 - 2;
+constexpr std::uint32_t kBlocks = 1u << (3 * kBlockLevels);
 
 /// Lowest and highest set coordinate of 4^3 Morton-ordered bits along one axis (0 = x, 1 = y, 2 = z); -1 when
 /// empty.
@@ -94,86 +56,97 @@ bool contains(const VoxelBox& outer, const VoxelBox& inner) {
            glm::all(glm::greaterThanEqual(outer.max, inner.max));
 }
 
-/// Number of voxels and their tight box, in model voxels.
-void measure(const VoxelRegion& source, OctreeRegion& region) {
-    const glm::ivec3 origin = source.coord() * kRegionEdge;
-    if (source.uniform()) {
-        region.voxelCount = std::uint64_t{1} << (3 * kRegionEdgeLog2);
-        region.bounds = {origin, origin + kRegionEdge};
-        return;
-    }
-    for (std::uint32_t c = 0; c < source.cellEnd(); ++c) {
-        const VoxelRegion::Cell cell = source.cell(c);
-        if (cell.empty()) continue;
-        const glm::ivec3 corner = origin + glm::ivec3{mortonDecode(c)} * kBrickEdge;
-        const VoxelBox whole{corner, corner + kBrickEdge};
-        if (cell.material) {
-            region.voxelCount += kBrickVoxels;
-            region.bounds.include(whole);
-            continue;
-        }
-        std::uint64_t count = 0;
-        for (const std::uint64_t word : cell.brick->occupancy)
-            count += static_cast<std::uint64_t>(std::popcount(word));
-        region.voxelCount += count;
-        if (count == 0 || contains(region.bounds, whole)) continue;
-        const VoxelBox local = boundsOf(*cell.brick);
-        region.bounds.include({corner + local.min, corner + local.max});
-    }
-}
-
 }  // namespace
 
 bool isEmpty(const VoxelRegion& region) {
     if (region.uniform()) return false;
-    for (std::uint32_t c = 0; c < region.cellEnd(); ++c) {
-        const VoxelRegion::Cell cell = region.cell(c);
-        if (cell.material) return false;
-        if (cell.brick == nullptr) continue;
-        if (std::ranges::any_of(cell.brick->occupancy, [](std::uint64_t word) { return word != 0; }))
-            return false;
+    for (std::uint32_t block = 0; block < kBlocks; ++block) {
+        for (std::uint64_t bits = region.usedCells(block); bits != 0; bits &= bits - 1) {
+            const auto cell = region.cell(block * 64 + static_cast<std::uint32_t>(std::countr_zero(bits)));
+            if (cell.material) return false;
+            if (std::ranges::any_of(cell.brick->occupancy, [](std::uint64_t word) { return word != 0; }))
+                return false;
+        }
     }
     return true;
 }
 
-Slot RegionBuilder::buildWord(std::uint64_t bits, const MaterialIndex* materials) {
-    if (bits == 0) return {};
-    if (~bits == 0 && allEqual(materials, 64)) return Slot::leaf(materials[0]);
-    std::array<Slot, 8> children;
-    for (unsigned k = 0; k < 8; ++k) {
-        children[k] = buildOctet(static_cast<std::uint8_t>(bits >> (8 * k)), materials + 8 * k);
-    }
-    return writer_.combine(children);
+void RegionBuilder::measureTile(std::uint32_t cell) {
+    const glm::ivec3 corner = glm::ivec3{mortonDecode(cell)} * kBrickEdge;
+    voxelCount_ += kBrickVoxels;
+    bounds_.include({corner, corner + kBrickEdge});
+}
+
+void RegionBuilder::measureBrick(std::uint32_t cell, const Brick& brick) {
+    const std::uint32_t count = countBits(brick.occupancy);
+    const glm::ivec3 corner = glm::ivec3{mortonDecode(cell)} * kBrickEdge;
+    voxelCount_ += count;
+    if (count == 0 || contains(bounds_, {corner, corner + kBrickEdge})) return;
+    const VoxelBox local = boundsOf(brick);
+    bounds_.include({corner + local.min, corner + local.max});
 }
 
 Slot RegionBuilder::buildBrick(const Brick& brick) {
     std::array<Slot, 8> children;
-    for (std::size_t k = 8; k-- > 0;) children[k] = buildWord(brick.occupancy[k], &brick.materials[64 * k]);
+    for (std::size_t k = 8; k-- > 0;)
+        children[k] = writer_.combineVoxels(brick.occupancy[k], &brick.materials[64 * k]);
     return writer_.combine(children);
 }
 
-Slot RegionBuilder::buildCells(const VoxelRegion& source, std::uint32_t firstCell, std::uint32_t level) {
-    if (firstCell >= source.cellEnd()) return {};
-    if (level == kCellLevels) {
-        const VoxelRegion::Cell cell = source.cell(firstCell);
-        if (cell.material) return Slot::leaf(*cell.material);
-        return cell.brick != nullptr ? buildBrick(*cell.brick) : Slot{};
+Slot RegionBuilder::buildCell(const VoxelRegion& source, std::uint32_t index) {
+    const VoxelRegion::Cell cell = source.cell(index);
+    if (cell.brick != nullptr) {
+        measureBrick(index, *cell.brick);
+        return buildBrick(*cell.brick);
     }
-    const std::uint32_t cellsPerChild = 1u << (3 * (kCellLevels - level - 1));
+    measureTile(index);
+    return Slot::leaf(*cell.material);
+}
+
+Slot RegionBuilder::buildBlock(const VoxelRegion& source, std::uint32_t block) {
+    const std::uint64_t used = source.usedCells(block);
+    if (used == 0) return {};
+    std::array<Slot, 8> eighths;
+    for (std::uint32_t k = 8; k-- > 0;) {
+        const auto mask = static_cast<std::uint8_t>(used >> (8 * k));
+        if (mask == 0) continue;
+        std::array<Slot, 8> cells;
+        for (std::uint32_t i = 8; i-- > 0;) {
+            if (((mask >> i) & 1u) != 0) cells[i] = buildCell(source, 64 * block + 8 * k + i);
+        }
+        eighths[k] = writer_.combine(cells);
+    }
+    return writer_.combine(eighths);
+}
+
+Slot RegionBuilder::buildBlocks(const VoxelRegion& source, std::uint32_t firstBlock, std::uint32_t levels) {
+    if (levels == 0) return buildBlock(source, firstBlock);
+    const std::uint32_t blocksPerChild = 1u << (3 * (levels - 1));
     std::array<Slot, 8> children;
     for (std::uint32_t k = 8; k-- > 0;) {
-        children[k] = buildCells(source, firstCell + k * cellsPerChild, level + 1);
+        children[k] = buildBlocks(source, firstBlock + k * blocksPerChild, levels - 1);
     }
     return writer_.combine(children);
+}
+
+Slot RegionBuilder::buildRoot(const VoxelRegion& source) {
+    voxelCount_ = 0;
+    bounds_ = {};
+    if (!source.uniform()) return buildBlocks(source, 0, kBlockLevels);
+    voxelCount_ = std::uint64_t{1} << (3 * kRegionEdgeLog2);
+    bounds_ = {glm::ivec3{0}, glm::ivec3{kRegionEdge}};
+    return Slot::leaf(*source.uniform());
 }
 
 Result<OctreeRegion> RegionBuilder::build(const VoxelRegion& source, Extent extent,
                                           std::size_t materialCount) {
     writer_.clear();
-    writer_.finish(source.uniform() ? Slot::leaf(*source.uniform()) : buildCells(source, 0, 0));
+    writer_.finish(buildRoot(source));
 
     OctreeRegion region;
     region.originVoxels = source.coord() * kRegionEdge;
+    region.voxelCount = voxelCount_;
+    region.bounds = {region.originVoxels + bounds_.min, region.originVoxels + bounds_.max};
     region.tree.depth = kRegionEdgeLog2;
     if (extent == Extent::Shrink) {
         for (const std::uint32_t slot : writer_.stripRoot(kRegionEdgeLog2 - 1)) {
@@ -183,7 +156,6 @@ Result<OctreeRegion> RegionBuilder::build(const VoxelRegion& source, Extent exte
     }
     PFVOX_CHECK(writer_.writeTree(region.tree));
     PFVOX_CHECK(writer_.writeAttributes(materialCount, region));
-    measure(source, region);
     return region;
 }
 

@@ -23,11 +23,18 @@ class RegionBuilder {
     Result<OctreeRegion> build(const VoxelRegion& source, Extent extent, std::size_t materialCount);
 
   private:
-    Slot buildCells(const VoxelRegion& source, std::uint32_t firstCell, std::uint32_t level);
+    Slot buildRoot(const VoxelRegion& source);
+    /// 8^levels blocks of 4^3 cells each.
+    Slot buildBlocks(const VoxelRegion& source, std::uint32_t firstBlock, std::uint32_t levels);
+    Slot buildBlock(const VoxelRegion& source, std::uint32_t block);
+    Slot buildCell(const VoxelRegion& source, std::uint32_t index);
     Slot buildBrick(const Brick& brick);
-    Slot buildWord(std::uint64_t bits, const MaterialIndex* materials);
+    void measureTile(std::uint32_t cell);
+    void measureBrick(std::uint32_t cell, const Brick& brick);
 
     NodeWriter writer_;
+    std::uint64_t voxelCount_ = 0;
+    VoxelBox bounds_;  ///< of the voxels so far, in the region
 };
 
 }  // namespace pfvox::octree

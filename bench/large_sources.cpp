@@ -1,0 +1,178 @@
+#include "large_sources.hpp"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "noise.hpp"
+#include "vox_file_writer.hpp"
+
+namespace pfvox::bench {
+
+namespace {
+
+constexpr int kModelEdge = 256;
+
+std::uint8_t colorAt(int x, int y, int z) {
+    return static_cast<std::uint8_t>(1 + 4 * (hashOf(x >> 6, y >> 6, 0) % 16) + hashOf(x, y, z) % 4);
+}
+
+/// Heights [bottom, top) that are filled in the column at (x, y).
+struct Column {
+    int bottom;
+    int top;
+};
+
+/// A landscape as a grid of models of 256^3, those without voxels left out.
+template <class ColumnAt>
+void writeLandscape(const std::filesystem::path& file, int edge, int height, const ColumnAt& columnAt) {
+    VoxFileWriter writer(file);
+    std::vector<VoxVoxel> voxels;
+    const auto modelAt = [&](glm::ivec3 corner) {
+        voxels.clear();
+        for (int y = 0; y < kModelEdge; ++y) {
+            for (int x = 0; x < kModelEdge; ++x) {
+                const Column column = columnAt(corner.x + x, corner.y + y);
+                const int end = std::min(column.top - corner.z, kModelEdge);
+                for (int z = std::max(column.bottom - corner.z, 0); z < end; ++z) {
+                    voxels.push_back({static_cast<std::uint8_t>(x), static_cast<std::uint8_t>(y),
+                                      static_cast<std::uint8_t>(z),
+                                      colorAt(corner.x + x, corner.y + y, corner.z + z)});
+                }
+            }
+        }
+        if (voxels.empty()) return;
+        const int model = writer.addModel(glm::ivec3{kModelEdge}, voxels);
+        writer.addInstance(model, corner + kModelEdge / 2);
+    };
+    for (int z = 0; z < height; z += kModelEdge)
+        for (int y = 0; y < edge; y += kModelEdge)
+            for (int x = 0; x < edge; x += kModelEdge) modelAt({x, y, z});
+    writer.finish();
+}
+
+/// Heights of all columns of a landscape, made once.
+class HeightMap {
+  public:
+    HeightMap(int edge, float amplitude) : edge_(edge), heights_(index(0, edge)) {
+        for (int y = 0; y < edge; ++y)
+            for (int x = 0; x < edge; ++x)
+                heights_[index(x, y)] = static_cast<int>(fractalNoise(x, y, amplitude, 512.0f));
+    }
+    int at(int x, int y) const { return heights_[index(x, y)]; }
+
+  private:
+    std::size_t index(int x, int y) const {
+        return static_cast<std::size_t>(y) * static_cast<std::size_t>(edge_) + static_cast<std::size_t>(x);
+    }
+    int edge_;
+    std::vector<int> heights_;
+};
+
+/// A hollow house of this size with windows: a building of the city.
+std::vector<VoxVoxel> building(glm::ivec3 size, int kind) {
+    std::vector<VoxVoxel> voxels;
+    for (int z = 0; z < size.z; ++z) {
+        for (int y = 0; y < size.y; ++y) {
+            for (int x = 0; x < size.x; ++x) {
+                const bool wall = x == 0 || y == 0 || x == size.x - 1 || y == size.y - 1;
+                const bool floor = z % 8 == 0 || z == size.z - 1;
+                if (!wall && !floor) continue;
+                const bool window = wall && z % 8 > 2 && z % 8 < 6 && (x + y) % 6 < 3;
+                if (window) continue;
+                voxels.push_back({static_cast<std::uint8_t>(x), static_cast<std::uint8_t>(y),
+                                  static_cast<std::uint8_t>(z),
+                                  static_cast<std::uint8_t>(1 + 16 * kind + (wall ? 0 : 8))});
+            }
+        }
+    }
+    return voxels;
+}
+
+/// One model of up to 32^3 voxels with a fraction of them set.
+void writeSmallFile(const std::filesystem::path& file, int seed) {
+    const auto chance = [&](int what) { return static_cast<int>(hashOf(seed, what, 77) >> 1); };
+    const glm::ivec3 size{8 + chance(0) % 25, 8 + chance(1) % 25, 8 + chance(2) % 25};
+    const std::uint32_t percent = 10 + hashOf(seed, 3, 0) % 60;
+    std::vector<VoxVoxel> voxels;
+    for (int z = 0; z < size.z; ++z)
+        for (int y = 0; y < size.y; ++y)
+            for (int x = 0; x < size.x; ++x) {
+                if (hashOf(x + 64 * seed, y, z) % 100 >= percent) continue;
+                voxels.push_back({static_cast<std::uint8_t>(x), static_cast<std::uint8_t>(y),
+                                  static_cast<std::uint8_t>(z), colorAt(8 * x, 8 * y, z)});
+            }
+    VoxFileWriter writer(file);
+    writer.addInstance(writer.addModel(size, voxels), size / 2);
+    writer.finish();
+}
+
+std::string numbered(const std::string& name, int i) {
+    std::string digits = std::to_string(i);
+    return name + std::string(4 - std::min<std::size_t>(4, digits.size()), '0') + digits + ".vox";
+}
+
+}  // namespace
+
+void writeTerrainShell(const std::filesystem::path& file) {
+    constexpr int kEdge = 2048;
+    constexpr int kThickness = 6;
+    const HeightMap heights(kEdge, 120.0f);
+    writeLandscape(file, kEdge, kModelEdge, [&](int x, int y) {
+        const int top = std::min(heights.at(x, y) + kThickness, kModelEdge);
+        return Column{top - kThickness, top};
+    });
+}
+
+void writeSolidTerrain(const std::filesystem::path& file) {
+    constexpr int kEdge = 1024;
+    const HeightMap heights(kEdge, 98.0f);
+    writeLandscape(file, kEdge, kEdge, [&](int x, int y) { return Column{0, heights.at(x, y)}; });
+}
+
+void writeInstances(const std::filesystem::path& file, int count) {
+    constexpr int kModels = 12;
+    constexpr int kStep = 40;
+    VoxFileWriter writer(file);
+    for (int kind = 0; kind < kModels; ++kind) {
+        const glm::ivec3 size{16 + kind, 20 + (kind % 3) * 6, 24 + kind * 6};
+        writer.addModel(size, building(size, kind));
+    }
+    const int row = static_cast<int>(std::ceil(std::sqrt(count)));
+    for (int i = 0; i < count; ++i) {
+        const int kind = static_cast<int>(hashOf(i, 5, 5) % kModels);
+        writer.addInstance(kind, {i % row * kStep, i / row * kStep, (24 + kind * 6) / 2});
+    }
+    writer.finish();
+}
+
+void writeSmallFiles(const std::filesystem::path& folder) {
+    std::filesystem::create_directories(folder);
+    for (int i = 0; i < 527; ++i) writeSmallFile(folder / numbered("small", i), i);
+}
+
+void writeCutFiles(const std::filesystem::path& folder) {
+    constexpr int kCuts = 100;
+    std::filesystem::create_directories(folder);
+    const std::filesystem::path whole = folder / "whole.tmp";
+    writeSmallFile(whole, 9);
+    const auto bytes = std::filesystem::file_size(whole);
+    for (unsigned i = 0; i < kCuts; ++i) {
+        const std::filesystem::path cut = folder / numbered("cut", static_cast<int>(i));
+        std::filesystem::copy_file(whole, cut, std::filesystem::copy_options::overwrite_existing);
+        std::filesystem::resize_file(cut, bytes * i / kCuts);
+    }
+    std::filesystem::remove(whole);
+}
+
+void writeLiar(const std::filesystem::path& file) {
+    // The size is a lie, the rest is in order: one voxel in a model.
+    const VoxVoxel voxel{1, 2, 3, 4};
+    VoxFileWriter writer(file);
+    writer.addModel({65536, 65536, 1}, {&voxel, 1});
+    writer.finish();
+    std::filesystem::resize_file(file,
+                                 64);  // within the palette, as such a file comes: the end is missing, too
+}
+
+}  // namespace pfvox::bench
