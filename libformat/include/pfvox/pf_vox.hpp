@@ -20,6 +20,9 @@ namespace pfvox {
 inline constexpr std::uint16_t kPfVoxVersionMajor = 1;
 inline constexpr std::uint16_t kPfVoxVersionMinor = 0;
 
+/// Optional feature bits of the header.
+inline constexpr std::uint32_t kPfVoxHollow = 1u << 0;  ///< "hollow": AssetInfo::hollowed
+
 /// xxh3-128 of everything that decides the content of an output: inputs, settings, tool and format version.
 /// All zero = unknown.
 struct ContentKey {

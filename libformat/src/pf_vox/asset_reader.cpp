@@ -267,6 +267,7 @@ class Reading {
     void readAll(Diagnostics& diagnostics) {
         const auto head = readHead(file_);
         if (!head) return static_cast<void>(outcome_.faults.push_back(head.error()));
+        outcome_.asset.hollowed = (head->header.optionalFeatures & kPfVoxHollow) != 0;
         const auto index = SectionIndex::make(*head, diagnostics);
         if (!index) return static_cast<void>(outcome_.faults.push_back(index.error()));
         NameList names;

@@ -235,7 +235,8 @@ Result<std::vector<std::byte>> encodePfVox(const OctreeAsset& asset, const Encod
                                                     .texture = Texture::LocalSymbols,
                                                     .raw = region.values};
     });
-    return writeSections(std::move(sections), settings);
+    const FileTraits traits{.optionalFeatures = asset.hollowed ? kPfVoxHollow : 0};
+    return writeSections(std::move(sections), traits, settings);
 }
 
 }  // namespace pfvox

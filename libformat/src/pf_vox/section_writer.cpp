@@ -94,7 +94,7 @@ Result<std::vector<Stored>> storeAll(std::vector<SectionContent> sections, int l
 
 }  // namespace
 
-Result<std::vector<std::byte>> writeSections(std::vector<SectionContent> sections,
+Result<std::vector<std::byte>> writeSections(std::vector<SectionContent> sections, const FileTraits& traits,
                                              const EncodeSettings& settings) {
     PFVOX_TRY(const auto, stored, storeAll(std::move(sections), settings.zstdLevel));
     if (stored.size() > 0xffffffffu / sizeof(layout::Section) - 1) {
@@ -105,8 +105,8 @@ Result<std::vector<std::byte>> writeSections(std::vector<SectionContent> section
                           .versionMajor = kPfVoxVersionMajor,
                           .versionMinor = kPfVoxVersionMinor,
                           .endianTag = layout::kEndianTag,
-                          .requiredFeatures = 0,
-                          .optionalFeatures = 0,
+                          .requiredFeatures = traits.requiredFeatures,
+                          .optionalFeatures = traits.optionalFeatures,
                           .tableOffset = sizeof(layout::Header),
                           .sectionCount = static_cast<std::uint32_t>(stored.size()),
                           .fileBytes = 0,
