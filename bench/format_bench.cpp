@@ -5,6 +5,7 @@
 
 #include <map>
 #include <memory>
+#include <pfvox/hollow.hpp>
 #include <pfvox/octree.hpp>
 #include <pfvox/pf_vox.hpp>
 
@@ -74,6 +75,27 @@ void encode(benchmark::State& state, const std::string& name) {
     state.counters["disk_B/voxel"] = static_cast<double>(bytes.size()) / static_cast<double>(source.voxels.size());
 }
 
+void buildWithLod(benchmark::State& state, const std::string& name) {
+    const MeasuredModel& source = model(name);
+    const VoxelAsset asset = scatter(source);
+    OctreeAsset built;
+    for (auto _ : state) built = buildOctrees(asset, Limits{}, {.lod = true}).value();
+    setRate(state, source);
+    const std::vector<std::byte> bytes = encodePfVox(built, {}).value();
+    state.counters["disk_B/voxel"] = static_cast<double>(bytes.size()) / static_cast<double>(source.voxels.size());
+}
+
+void hollow(benchmark::State& state, const std::string& name) {
+    const MeasuredModel& source = model(name);
+    VoxelAsset asset = scatter(source);
+    HollowReport report;
+    for (auto _ : state) report = hollowSolids(asset);
+    setRate(state, source);
+    state.counters["hidden"] = static_cast<double>(report.hiddenVoxels);
+    const std::vector<std::byte> bytes = encodePfVox(buildOctrees(asset, Limits{}).value(), {}).value();
+    state.counters["disk_B/voxel"] = static_cast<double>(bytes.size()) / static_cast<double>(source.voxels.size());
+}
+
 void decode(benchmark::State& state, const std::string& name) {
     const MeasuredModel& source = model(name);
     const std::vector<std::byte> bytes = encodePfVox(buildOctrees(scatter(source), Limits{}).value(), {}).value();
@@ -94,6 +116,8 @@ void registerAll() {
         };
         add("scatter", scatterBricks);
         add("build", buildOctree);
+        add("build_lod", buildWithLod);
+        add("hollow", hollow);
         add("complete", completeBuild);
         add("encode", encode)->Arg(3)->Arg(9);
         add("decode", decode);

@@ -9,6 +9,7 @@
 #include <pfvox/octree.hpp>
 #include <span>
 
+#include "octree/lod_builder.hpp"
 #include "octree/region_builder.hpp"
 
 namespace pfvox {
@@ -150,7 +151,8 @@ void summarise(OctreeModel& model) {
 
 }  // namespace
 
-Result<OctreeAsset> buildOctrees(const VoxelAsset& asset, const Limits& limits) {
+Result<OctreeAsset> buildOctrees(const VoxelAsset& asset, const Limits& limits,
+                                 const BuildSettings& settings) {
     if (asset.materials.size() > limits.maxMaterials) {
         return fail(ErrorCode::LimitExceeded, fmt::format("{} materials, more than maxMaterials = {}",
                                                           asset.materials.size(), limits.maxMaterials));
@@ -164,6 +166,10 @@ Result<OctreeAsset> buildOctrees(const VoxelAsset& asset, const Limits& limits) 
     }
     PFVOX_CHECK(runTasks(tasks, asset.materials.size()));
     for (OctreeModel& model : built.models) summarise(model);
+    if (settings.lod) {
+        for (std::size_t i = 0; i < built.models.size(); ++i)
+            octree::addLod(asset.models[i], asset.materials, built.models[i]);
+    }
     for (Material& material : built.materials) material = quantised(material);
     return built;
 }

@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <map>
-#include <tuple>
 
 namespace pfvox::octree {
 
@@ -60,15 +58,14 @@ OpacityGrid::OpacityGrid(const VoxelModel& model, const std::vector<Material>& m
 }
 
 void OpacityGrid::findNeighbours(const VoxelModel& model) {
-    std::map<std::tuple<int, int, int>, std::uint32_t> indexOf;
-    const auto key = [](glm::ivec3 c) { return std::make_tuple(c.x, c.y, c.z); };
-    for (std::uint32_t r = 0; r < regions_.size(); ++r) indexOf[key(model.regions()[r]->coord())] = r;
+    const auto key = [](glm::ivec3 c) { return std::array{c.x, c.y, c.z}; };
+    for (std::uint32_t r = 0; r < regions_.size(); ++r) indexOf_[key(model.regions()[r]->coord())] = r;
     for (std::uint32_t r = 0; r < regions_.size(); ++r) {
         for (unsigned face = 0; face < kFaces; ++face) {
             glm::ivec3 coord = model.regions()[r]->coord();
             coord[static_cast<glm::length_t>(axisOf(face))] += isUpward(face) ? 1 : -1;
-            const auto found = indexOf.find(key(coord));
-            regions_[r].beside[face] = found == indexOf.end() ? kNone : found->second;
+            const auto found = indexOf_.find(key(coord));
+            regions_[r].beside[face] = found == indexOf_.end() ? kNone : found->second;
         }
     }
 }

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <deque>
+#include <map>
 #include <pfvox/voxel_model.hpp>
 #include <vector>
 
@@ -25,6 +26,9 @@ class OpacityGrid {
     OpacityGrid(const VoxelModel& model, const std::vector<Material>& materials);
 
     bool isOpaqueMaterial(MaterialIndex material) const { return opaqueMaterials_[material]; }
+
+    /// The place in VoxelModel::regions() of the region with this coordinate. Precondition: it exists.
+    std::uint32_t regionAt(glm::ivec3 coord) const { return indexOf_.at({coord.x, coord.y, coord.z}); }
 
     /// The opaque voxels of a cell.
     const BrickMask& opaque(CellPlace place) const;
@@ -46,6 +50,7 @@ class OpacityGrid {
     };
     void findNeighbours(const VoxelModel& model);
 
+    std::map<std::array<int, 3>, std::uint32_t> indexOf_;  ///< by region coordinate
     std::vector<bool> opaqueMaterials_;  ///< by any 16-bit index
     std::vector<Region> regions_;
 };

@@ -8,6 +8,8 @@
 
 #include "octree/node_planes.hpp"
 #include "pf_vox/info_reader.hpp"
+#include "pf_vox/lod_codec.hpp"
+#include "pf_vox/region_reader.hpp"
 #include "pf_vox/section_index.hpp"
 
 namespace pfvox {
@@ -67,11 +69,13 @@ Result<void> checkModelRecord(const layout::Model& m, std::uint64_t nextRegion, 
 }
 
 /// What the octrees will take, so that nothing is allocated for a file that is too large.
-std::uint64_t decodedBytes(const Tables& tables) {
+std::uint64_t decodedBytes(const Tables& tables, const SectionIndex& index) {
     std::uint64_t bytes = 0;
-    for (const layout::Region& r : tables.regions) {
+    for (std::size_t i = 0; i < tables.regions.size(); ++i) {
+        const layout::Region& r = tables.regions[i];
         bytes +=
             8ull * r.nodeCount + 4ull * r.farCount + (r.paletteCount <= 256 ? 1ull : 2ull) * r.valueCount;
+        if (index.find(RegionPart::Lod, i) != nullptr) bytes += residentLodBytes(r.nodeCount);
     }
     return bytes;
 }
@@ -110,7 +114,7 @@ Result<Tables> readTables(std::span<const std::byte> file, const SectionIndex& i
             *index.find("REGN"), ErrorCode::BadStructure,
             fmt::format("{} regions belong to no model", tables.regions.size() - nextRegion));
     }
-    if (const std::uint64_t bytes = decodedBytes(tables); bytes > limits.maxMemoryBytes) {
+    if (const std::uint64_t bytes = decodedBytes(tables, index); bytes > limits.maxMemoryBytes) {
         return failInSection(
             *index.find("REGN"), ErrorCode::LimitExceeded,
             fmt::format("decodes to {} bytes, more than maxMemoryBytes = {}", bytes, limits.maxMemoryBytes));
@@ -191,46 +195,6 @@ OctreeModel modelFromRecord(const layout::Model& record, const NameList& names) 
     return model;
 }
 
-struct RegionSections {
-    const layout::Section* mask;
-    const layout::Section* attributes;
-};
-
-Result<OctreeRegion> readRegion(std::span<const std::byte> file, const layout::Region& record,
-                                const RegionSections& sections, std::span<const std::uint16_t> palettes) {
-    OctreeRegion region;
-    region.originVoxels = toVec(record.origin);
-    region.tree.depth = record.depth;
-    const auto palette = palettes.subspan(record.paletteFirst, record.paletteCount);
-    region.palette.assign(palette.begin(), palette.end());
-
-    const std::size_t n = record.nodeCount;
-    PFVOX_TRY(const auto, planes,
-              readSection(file, *sections.mask, octree::planeBytes(n, record.branchCount, true)));
-    auto linked = octree::linkPlanes(octree::cutPlanes(planes, n, record.branchCount, true), region.tree,
-                                     &region.lookup);
-    if (!linked) return failInSection(*sections.mask, linked.error().code, describe(linked.error()));
-    const std::uint32_t last = region.lookup.back();
-    const std::uint64_t values = (last >> 8) + static_cast<std::uint64_t>(std::popcount(last & 0xffu));
-    if (region.tree.farTable.size() != record.farCount || values != record.valueCount) {
-        return failInSection(*sections.mask, ErrorCode::BadStructure,
-                             "the masks do not have the announced counts");
-    }
-    PFVOX_TRY(auto, bytes, readSection(file, *sections.attributes, region.valueBytes() * values));
-    region.values = std::move(bytes);
-    std::uint32_t largest = 0;
-    for (std::size_t i = 0; i < values; ++i) largest = std::max(largest, region.value(i));
-    if (largest >= region.palette.size()) {
-        return failInSection(*sections.attributes, ErrorCode::BadReference,
-                             fmt::format("value {} in a palette of {}", largest, region.palette.size()));
-    }
-    region.voxelCount = record.voxelCount;
-    region.bounds = {
-        region.originVoxels + glm::ivec3{record.boundsMin[0], record.boundsMin[1], record.boundsMin[2]},
-        region.originVoxels + glm::ivec3{record.boundsMax[0], record.boundsMax[1], record.boundsMax[2]}};
-    return region;
-}
-
 /// What only a walk over all leaves can tell: voxel counts and boxes.
 Result<void> checkContent(const OctreeModel& model) {
     const VoxelModel voxels = toVoxelModel(model);
@@ -304,14 +268,9 @@ class Reading {
             for (OctreeRegion& region : model.regions) targets.push_back(&region);
         }
         std::vector<Result<void>> results(targets.size());
+        const RegionReader reader(file_, index, outcome_.asset.materials);
         tbb::parallel_for(std::size_t{0}, targets.size(), [&](std::size_t i) {
-            const RegionSections sections{index.mask(i), index.attributes(i)};
-            if (sections.mask == nullptr || sections.attributes == nullptr) {
-                results[i] =
-                    fail(ErrorCode::BadStructure, fmt::format("MASK or ATTR of region {} is missing", i));
-                return;
-            }
-            auto region = readRegion(file_, tables.regions[i], sections, tables.palettes);
+            auto region = reader.read(i, tables.regions[i], tables.palettes);
             if (region) {
                 *targets[i] = *std::move(region);
             } else {

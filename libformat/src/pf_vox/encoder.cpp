@@ -6,11 +6,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <iterator>
 #include <map>
 #include <pfvox/pf_vox.hpp>
 
 #include "octree/node_planes.hpp"
 #include "pf_vox/layout.hpp"
+#include "pf_vox/lod_codec.hpp"
 #include "pf_vox/section_writer.hpp"
 
 namespace pfvox {
@@ -127,6 +129,19 @@ layout::Region toLayout(const OctreeRegion& region, std::uint32_t paletteFirst) 
             .reserved = {}};
 }
 
+Result<void> checkLod(const OctreeRegion& region, std::size_t materialCount) {
+    if (region.lod.empty()) return {};
+    const std::size_t n = region.tree.nodes.size();
+    if (region.lod.colors.size() != n || region.lod.materials.size() != n) {
+        return fail(ErrorCode::BadReference, "a level of detail has another number of nodes than its tree");
+    }
+    if (std::ranges::max(region.lod.materials) >= region.palette.size() ||
+        std::ranges::max(region.palette) >= materialCount) {
+        return fail(ErrorCode::BadReference, "a level of detail has a material that does not exist");
+    }
+    return {};
+}
+
 Result<void> checkReferences(const OctreeAsset& asset) {
     for (std::size_t i = 0; i < asset.instances.size(); ++i) {
         if (asset.instances[i].model >= asset.models.size()) {
@@ -134,6 +149,9 @@ Result<void> checkReferences(const OctreeAsset& asset) {
                         fmt::format("instance {} places model {}, but there are {} models", i,
                                     asset.instances[i].model, asset.models.size()));
         }
+    }
+    for (const OctreeModel& model : asset.models) {
+        for (const OctreeRegion& region : model.regions) PFVOX_CHECK(checkLod(region, asset.materials.size()));
     }
     return {};
 }
@@ -202,6 +220,38 @@ void addInfoSections(const OctreeAsset& asset, NameTable& names, std::vector<Sec
     sections.push_back(std::move(metaSection));
 }
 
+/// The sections of one region, packed.
+std::vector<SectionContent> packRegion(const OctreeRegion& region, std::uint32_t id,
+                                       const std::vector<Material>& materials) {
+    std::vector<SectionContent> sections;
+    sections.push_back({.fourcc = "MASK",
+                        .region = id,
+                        .count = region.tree.nodes.size(),
+                        .raw = octree::splitPlanes(region.tree, region.lookup)});
+    sections.push_back({.fourcc = "ATTR",
+                        .region = id,
+                        .count = region.valueCount(),
+                        .texture = Texture::LocalSymbols,
+                        .raw = region.values});
+    if (!region.lod.empty()) {
+        sections.push_back({.fourcc = "LODA",
+                            .region = id,
+                            .mustUnderstand = false,
+                            .count = region.lod.colors.size(),
+                            .raw = packLod(region, materials)});
+    }
+    return sections;
+}
+
+void addRegionSections(const OctreeAsset& asset, const ModelTables& tables,
+                       std::vector<SectionContent>& sections) {
+    std::vector<std::vector<SectionContent>> ofRegions(tables.sources.size());
+    tbb::parallel_for(std::size_t{0}, ofRegions.size(), [&](std::size_t i) {
+        ofRegions[i] = packRegion(*tables.sources[i], static_cast<std::uint32_t>(i), asset.materials);
+    });
+    for (auto& ofRegion : ofRegions) std::ranges::move(ofRegion, std::back_inserter(sections));
+}
+
 }  // namespace
 
 Result<std::vector<std::byte>> encodePfVox(const OctreeAsset& asset, const EncodeSettings& settings) {
@@ -220,21 +270,7 @@ Result<std::vector<std::byte>> encodePfVox(const OctreeAsset& asset, const Encod
     sections.push_back(recordSection("PALT", tables.palettes));
     sections.push_back(names.section());
 
-    const std::size_t firstRegionSection = sections.size();
-    sections.resize(firstRegionSection + 2 * tables.sources.size());
-    tbb::parallel_for(std::size_t{0}, tables.sources.size(), [&](std::size_t i) {
-        const OctreeRegion& region = *tables.sources[i];
-        const auto id = static_cast<std::uint32_t>(i);
-        sections[firstRegionSection + 2 * i] = {.fourcc = "MASK",
-                                                .region = id,
-                                                .count = region.tree.nodes.size(),
-                                                .raw = octree::splitPlanes(region.tree, region.lookup)};
-        sections[firstRegionSection + 2 * i + 1] = {.fourcc = "ATTR",
-                                                    .region = id,
-                                                    .count = region.valueCount(),
-                                                    .texture = Texture::LocalSymbols,
-                                                    .raw = region.values};
-    });
+    addRegionSections(asset, tables, sections);
     const FileTraits traits{.optionalFeatures = asset.hollowed ? kPfVoxHollow : 0};
     return writeSections(std::move(sections), traits, settings);
 }

@@ -2,6 +2,7 @@
 // sections.
 #pragma once
 
+#include <array>
 #include <pfvox/error.hpp>
 #include <string_view>
 #include <vector>
@@ -9,6 +10,10 @@
 #include "pf_vox/section_reader.hpp"
 
 namespace pfvox {
+
+/// The sections that belong to one region, in the order of kRegionSections.
+enum class RegionPart : std::uint8_t { Masks, Values, Lod };
+inline constexpr std::array<std::string_view, 3> kRegionSections{"MASK", "ATTR", "LODA"};
 
 class SectionIndex {
   public:
@@ -18,18 +23,19 @@ class SectionIndex {
 
     /// The section of the whole file with this name, or null.
     const layout::Section* find(std::string_view fourcc) const;
-    /// MASK or ATTR of a region, or null.
-    const layout::Section* mask(std::size_t region) const { return get(masks_, region); }
-    const layout::Section* attributes(std::size_t region) const { return get(attributes_, region); }
-    std::size_t regionCount() const { return std::max(masks_.size(), attributes_.size()); }
-
-  private:
-    static const layout::Section* get(const std::vector<const layout::Section*>& list, std::size_t region) {
+    /// A section of a region, or null.
+    const layout::Section* find(RegionPart part, std::size_t region) const {
+        const auto& list = ofRegions_[static_cast<std::size_t>(part)];
         return region < list.size() ? list[region] : nullptr;
     }
+    /// How many regions have sections: an upper limit of how many there can be.
+    std::size_t regionCount() const;
+
+  private:
+    Result<void> addToRegion(std::size_t part, const layout::Section& section, std::size_t sectionCount);
+
     std::vector<const layout::Section*> whole_;
-    std::vector<const layout::Section*> masks_;
-    std::vector<const layout::Section*> attributes_;
+    std::array<std::vector<const layout::Section*>, kRegionSections.size()> ofRegions_;  ///< by part, region
 };
 
 }  // namespace pfvox
