@@ -20,10 +20,10 @@ struct HollowReport {
 
 /// Hollows every model in place and sets AssetInfo::hollowed. The octree of the result has the fewest leaves
 /// that any choice of hidden materials gives: a cube that is full and whose visible voxels have one material
-/// takes this material throughout; where there are more, hidden voxels take the material that is most
-/// frequent among the hidden voxels of their region (of equally frequent ones the first). Doing it twice
-/// changes nothing more. Regions are treated in parallel in the calling TBB arena; the result does not depend
-/// on the number of threads.
+/// takes this material throughout. Where there are more, hidden voxels take the most frequent visible
+/// material of their cube of 64^3 (of equally frequent ones the first), or the most frequent hidden one where
+/// nothing opaque is visible. Doing it twice changes nothing more. Regions are treated in parallel in the
+/// calling TBB arena; the result does not depend on the number of threads.
 HollowReport hollowSolids(VoxelAsset& asset);
 
 }  // namespace pfvox

@@ -23,6 +23,16 @@ constexpr Visible kNothing = 0xffffffffu;  ///< there are none
 constexpr Visible kSeveral = 0xfffffffeu;  ///< nothing that hidden voxels could take: several materials, or a
                                            ///< transparent one
 
+/// Level of the cubes whose hidden voxels get one material: 64^3, about what the compressor of the values has
+/// in view.
+constexpr std::size_t kFillingLevel = 3;
+
+std::uint64_t countBits(const BrickMask& mask) {
+    std::uint64_t count = 0;
+    for (const std::uint64_t word : mask) count += static_cast<std::uint64_t>(std::popcount(word));
+    return count;
+}
+
 Visible join(Visible a, Visible b) {
     if (a == kNothing || a == b) return b;
     return b == kNothing ? a : kSeveral;
@@ -31,13 +41,18 @@ Visible join(Visible a, Visible b) {
 /// One region that has bricks or tiles.
 class RegionHollower {
   public:
-    RegionHollower(VoxelRegion& region, std::uint32_t index, const octree::OpacityGrid& opacity)
-        : region_(region), index_(index), opacity_(opacity), hidden_(region.cellEnd()) {}
+    RegionHollower(VoxelRegion& region, std::uint32_t index, const octree::OpacityGrid& opacity,
+                   std::size_t materialCount)
+        : region_(region),
+          index_(index),
+          opacity_(opacity),
+          hidden_(region.cellEnd()),
+          visibleOf_(materialCount),
+          hiddenOf_(materialCount) {}
 
     HollowReport run() {
         lookUpwards();
         if (report_.hiddenVoxels == 0) return report_;
-        filling_ = static_cast<MaterialIndex>(std::ranges::max_element(hiddenOf_) - hiddenOf_.begin());
         fillDownwards(levels_.size() - 1, 0);
         return report_;
     }
@@ -67,29 +82,17 @@ class RegionHollower {
         return visibleAs(first);
     }
 
-    void countHidden(MaterialIndex material, std::uint64_t count) {
-        if (hiddenOf_.size() <= material) hiddenOf_.resize(std::size_t{material} + 1);
-        hiddenOf_[material] += count;
+    Visible lookAt(const VoxelRegion::Cell& cell, const BrickMask& hidden) {
+        const std::uint64_t count = countBits(hidden);
         report_.hiddenVoxels += count;
-    }
-
-    Visible lookAtBrick(const Brick& brick, const BrickMask& hidden) {
+        if (count == kBrickVoxels) return kNothing;
+        if (cell.material) return visibleAs(*cell.material);
         Visible visible = kNothing;
         for (std::size_t w = 0; w < hidden.size(); ++w) {
-            const MaterialIndex* materials = &brick.materials[64 * w];
-            for (std::uint64_t bits = hidden[w]; bits != 0; bits &= bits - 1) {
-                countHidden(materials[std::countr_zero(bits)], 1);
-            }
-            visible = join(visible, visibleIn(brick.occupancy[w] & ~hidden[w], materials));
+            visible = join(visible,
+                           visibleIn(cell.brick->occupancy[w] & ~hidden[w], &cell.brick->materials[64 * w]));
         }
         return visible;
-    }
-
-    Visible lookAtTile(MaterialIndex material, const BrickMask& hidden) {
-        std::uint64_t count = 0;
-        for (const std::uint64_t word : hidden) count += static_cast<std::uint64_t>(std::popcount(word));
-        if (count != 0) countHidden(material, count);
-        return count == kBrickVoxels ? kNothing : visibleAs(material);
     }
 
     /// Fills hidden_ and levels_: level 0 has an entry for each cell, the last one entry for all.
@@ -99,8 +102,7 @@ class RegionHollower {
             const VoxelRegion::Cell cell = region_.cell(c);
             if (cell.empty()) continue;
             hidden_[c] = hiddenVoxels(c);
-            levels_[0][c] = cell.brick != nullptr ? lookAtBrick(*cell.brick, hidden_[c])
-                                                  : lookAtTile(*cell.material, hidden_[c]);
+            levels_[0][c] = lookAt(cell, hidden_[c]);
         }
         while (levels_.back().size() > 1) {
             const std::vector<Visible>& below = levels_.back();
@@ -112,12 +114,51 @@ class RegionHollower {
 
     void fillDownwards(std::size_t level, std::uint32_t at) {
         const Visible visible = levels_[level][at];
-        if (visible == kSeveral && level > 0) {
+        const bool split = visible == kSeveral && level > 0;
+        const bool isRoot = level + 1 == levels_.size();
+        if (level == kFillingLevel || (level > kFillingLevel ? !split : isRoot)) {
+            chooseFilling(at << (3 * level), 1u << (3 * level));
+        }
+        if (split) {
             for (std::uint32_t k = 0; k < 8; ++k) fillDownwards(level - 1, 8 * at + k);
             return;
         }
         const std::uint32_t count = 1u << (3 * level);
         for (std::uint32_t c = at * count; c < (at + 1) * count; ++c) fillCell(c, visible);
+    }
+
+    /// The most frequent material of what is visible in a cube, so that its values have no material more than
+    /// without the hidden ones; where nothing opaque is visible, of what is hidden.
+    void chooseFilling(std::uint32_t firstCell, std::uint32_t count) {
+        std::ranges::fill(visibleOf_, 0);
+        std::ranges::fill(hiddenOf_, 0);
+        for (std::uint32_t c = firstCell; c < firstCell + count; ++c) countMaterials(c);
+        const auto mostFrequent = [&](const std::vector<std::uint32_t>& counts) {
+            const auto most = std::ranges::max_element(counts);
+            if (*most != 0) filling_ = static_cast<MaterialIndex>(most - counts.begin());
+            return *most != 0;
+        };
+        if (!mostFrequent(visibleOf_)) mostFrequent(hiddenOf_);
+    }
+
+    void countMaterials(std::uint32_t c) {
+        const VoxelRegion::Cell cell = region_.cell(c);
+        if (cell.empty()) return;
+        if (cell.material) {
+            if (!opacity_.isOpaqueMaterial(*cell.material)) return;
+            const auto hidden = static_cast<std::uint32_t>(countBits(hidden_[c]));
+            hiddenOf_[*cell.material] += hidden;
+            visibleOf_[*cell.material] += kBrickVoxels - hidden;
+            return;
+        }
+        const BrickMask& opaque = opacity_.opaque({index_, c});
+        for (std::size_t w = 0; w < opaque.size(); ++w) {
+            const MaterialIndex* materials = &cell.brick->materials[64 * w];
+            for (std::uint64_t bits = opaque[w]; bits != 0; bits &= bits - 1) {
+                const int i = std::countr_zero(bits);
+                ++(((hidden_[c][w] >> i) & 1u) != 0 ? hiddenOf_ : visibleOf_)[materials[i]];
+            }
+        }
     }
 
     /// `visible`: of the largest cube that holds the cell and has at most one visible material.
@@ -174,7 +215,8 @@ class RegionHollower {
     const octree::OpacityGrid& opacity_;
     std::vector<BrickMask> hidden_;  ///< by cell
     std::vector<std::vector<Visible>> levels_;
-    std::vector<std::uint64_t> hiddenOf_;  ///< hidden voxels of each material
+    std::vector<std::uint32_t> visibleOf_;  ///< visible opaque voxels of each material in a cube
+    std::vector<std::uint32_t> hiddenOf_;   ///< hidden ones
     MaterialIndex filling_ = 0;
     HollowReport report_;
 };
@@ -185,7 +227,7 @@ HollowReport hollowModel(VoxelModel& model, const std::vector<Material>& materia
     tbb::parallel_for(std::size_t{0}, reports.size(), [&](std::size_t r) {
         VoxelRegion& region = *model.regions()[r];
         if (region.uniform() || region.cellEnd() == 0) return;  // one leaf, or none: nothing to gain
-        reports[r] = RegionHollower(region, static_cast<std::uint32_t>(r), opacity).run();
+        reports[r] = RegionHollower(region, static_cast<std::uint32_t>(r), opacity, materials.size()).run();
     });
     HollowReport sum;
     for (const HollowReport& report : reports) {
