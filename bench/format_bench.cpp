@@ -96,15 +96,22 @@ void hollow(benchmark::State& state, const std::string& name) {
     state.counters["disk_B/voxel"] = static_cast<double>(bytes.size()) / static_cast<double>(source.voxels.size());
 }
 
-void decode(benchmark::State& state, const std::string& name) {
+void decodeProfile(benchmark::State& state, const std::string& name, Profile profile) {
     const MeasuredModel& source = model(name);
-    const std::vector<std::byte> bytes = encodePfVox(buildOctrees(scatter(source), Limits{}).value(), {}).value();
+    const std::vector<std::byte> bytes =
+        encodePfVox(buildOctrees(scatter(source), Limits{}).value(), {.profile = profile}).value();
     DiagnosticList diagnostics;
     for (auto _ : state) {
         OctreeAsset asset = decodePfVox(bytes, Limits{}, diagnostics).value();
         benchmark::DoNotOptimize(asset);
     }
     setRate(state, source);
+    state.counters["disk_B/voxel"] = static_cast<double>(bytes.size()) / static_cast<double>(source.voxels.size());
+}
+
+void decode(benchmark::State& state, const std::string& name) { decodeProfile(state, name, Profile::Packed); }
+void decodeResident(benchmark::State& state, const std::string& name) {
+    decodeProfile(state, name, Profile::Resident);
 }
 
 void registerAll() {
@@ -121,6 +128,7 @@ void registerAll() {
         add("complete", completeBuild);
         add("encode", encode)->Arg(3)->Arg(9);
         add("decode", decode);
+        add("decode_resident", decodeResident);
     }
 }
 

@@ -69,12 +69,13 @@ struct NodeTree {
     }
 };
 
-/// What stands for a whole node when it covers less than a pixel: one entry for each node, the root included, in
-/// node order. Only what can be seen counts: faces of voxels that no opaque neighbour in the same model covers.
+/// What stands for a whole node when it covers less than a pixel: one entry for each node, the root included,
+/// in node order. Only what can be seen counts: faces of voxels that no opaque neighbour in the same model
+/// covers.
 struct NodeLod {
-    /// R, G, B (sRGB encoded) and coverage, R in the low byte. The colour is the mean of the linear base colours,
-    /// weighted by the area of their visible faces; 0 where nothing is visible. Coverage x 255, rounded up: the
-    /// share of the node's columns of voxels that are not empty, mean of the three axes.
+    /// R, G, B (sRGB encoded) and coverage, R in the low byte. The colour is the mean of the linear base
+    /// colours, weighted by the area of their visible faces; 0 where nothing is visible. Coverage x 255,
+    /// rounded up: the share of the node's columns of voxels that are not empty, mean of the three axes.
     std::vector<std::uint32_t> colors;
     /// Palette index of the material with the largest visible area, of equals the first; 0 where nothing is
     /// visible.

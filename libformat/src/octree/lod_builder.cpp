@@ -133,9 +133,10 @@ class RegionWalk {
     std::uint32_t coverage(const Node& node) {
         const std::uint32_t all = 3u << (2 * node.edgeLog2);
         const std::uint64_t block = occupied_[(node.morton >> 6) & 7u];
-        const std::uint32_t columns = node.edgeLog2 >= 3   ? shadow(node.edgeLog2).columns()
-                                      : node.edgeLog2 == 2 ? shadowColumns(block)
-                                                           : shadowColumnsOfOctet(block >> (node.morton & 63u) & 0xffu);
+        const std::uint32_t columns = node.edgeLog2 >= 3 ? shadow(node.edgeLog2).columns()
+                                      : node.edgeLog2 == 2
+                                          ? shadowColumns(block)
+                                          : shadowColumnsOfOctet(block >> (node.morton & 63u) & 0xffu);
         return (255 * columns + all - 1) / all;
     }
 

@@ -1,5 +1,5 @@
-// LodMeasure: the quantities that a level of detail is made from: visible faces of voxels, shadows of cubes along the
-// axes, and histograms of materials.
+// LodMeasure: the quantities that a level of detail is made from: visible faces of voxels, shadows of cubes
+// along the axes, and histograms of materials.
 #pragma once
 
 #include <algorithm>
@@ -28,8 +28,9 @@ class FaceCounts {
 /// Visible faces of a leaf of edge 8 x 2^n that begins at a cell, without looking at its inside.
 std::uint32_t facesOfTile(const OpacityGrid& opacity, CellPlace first, std::uint32_t edgeLog2, bool isOpaque);
 
-/// Which columns of a cube along each axis hold a voxel. A word is the shadow of one column of 4^3 blocks, of whose
-/// bits 16 are used; words are in 2D Morton order, so that the shadow of an octant is a run of a parent's words.
+/// Which columns of a cube along each axis hold a voxel. A word is the shadow of one column of 4^3 blocks, of
+/// whose bits 16 are used; words are in 2D Morton order, so that the shadow of an octant is a run of a
+/// parent's words.
 class Shadow {
   public:
     /// Edge of the cube is 2^edgeLog2, at least 8.

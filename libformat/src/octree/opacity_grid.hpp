@@ -51,7 +51,7 @@ class OpacityGrid {
     void findNeighbours(const VoxelModel& model);
 
     std::map<std::array<int, 3>, std::uint32_t> indexOf_;  ///< by region coordinate
-    std::vector<bool> opaqueMaterials_;  ///< by any 16-bit index
+    std::vector<bool> opaqueMaterials_;                    ///< by any 16-bit index
     std::vector<Region> regions_;
 };
 

@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <numeric>
 
-#include "octree/node_planes.hpp"
 #include "pf_vox/info_reader.hpp"
 #include "pf_vox/lod_codec.hpp"
 #include "pf_vox/region_reader.hpp"
 #include "pf_vox/section_index.hpp"
+#include "pf_vox/top_tree_reader.hpp"
 
 namespace pfvox {
 
@@ -21,7 +21,6 @@ struct Tables {
     std::vector<layout::Model> models;
     std::vector<layout::Region> regions;
     std::vector<std::uint16_t> palettes;
-    std::vector<std::uint8_t> topTrees;
 };
 
 Result<void> checkRegionRecord(const layout::Region& r, std::size_t paletteSize) {
@@ -102,12 +101,10 @@ Result<Tables> readTables(std::span<const std::byte> file, const SectionIndex& i
         PFVOX_CHECK(inRecord(checkRegionRecord(tables.regions[i], tables.palettes.size()), "REGN", i));
     }
     std::uint64_t nextRegion = 0;
-    std::uint64_t topNodes = 0;
     for (std::size_t i = 0; i < tables.models.size(); ++i) {
         const layout::Model& m = tables.models[i];
         PFVOX_CHECK(inRecord(checkModelRecord(m, nextRegion, tables.regions.size(), limits), "MODL", i));
         nextRegion += m.regionCount;
-        topNodes += m.topNodeCount;
     }
     if (nextRegion != tables.regions.size()) {
         return failInSection(
@@ -119,64 +116,7 @@ Result<Tables> readTables(std::span<const std::byte> file, const SectionIndex& i
             *index.find("REGN"), ErrorCode::LimitExceeded,
             fmt::format("decodes to {} bytes, more than maxMemoryBytes = {}", bytes, limits.maxMemoryBytes));
     }
-    if (topNodes != 0) {
-        const layout::Section* section = index.find("TOPT");
-        if (section == nullptr) return fail(ErrorCode::BadStructure, "section TOPT is missing");
-        PFVOX_TRY(auto, planes, readSection(file, *section, 2 * topNodes));
-        tables.topTrees = std::move(planes);
-    }
     return tables;
-}
-
-/// Where each leaf of the top tree lies, in region order.
-std::vector<glm::ivec3> topLeafOrigins(const OctreeModel& model) {
-    std::vector<glm::ivec3> corner(model.topTree.nodes.size());
-    std::vector<std::uint32_t> level(model.topTree.nodes.size(), model.topTree.depth);
-    corner[0] = model.originVoxels;
-    std::vector<glm::ivec3> origins;
-    for (std::uint32_t i = 0; i < model.topTree.nodes.size(); ++i) {
-        const std::uint32_t d = model.topTree.nodes[i];
-        const std::uint32_t childLevel = level[i] - 1;
-        std::uint32_t child = node::innerMask(d) != 0 ? model.topTree.firstChild(i) : 0;
-        for (std::uint32_t slot = 0; slot < 8; ++slot) {
-            if (((node::validMask(d) >> slot) & 1u) == 0) continue;
-            const glm::ivec3 at =
-                corner[i] + glm::ivec3{mortonDecode(slot)} * (1 << (childLevel + layout::kMaxRegionDepth));
-            if (((node::leafMask(d) >> slot) & 1u) != 0) {
-                // A leaf above the last level would be larger than a region: told apart by an impossible
-                // origin.
-                origins.push_back(childLevel == 0 ? at : glm::ivec3{std::numeric_limits<int>::min()});
-            } else {
-                corner[child] = at;
-                level[child++] = childLevel;
-            }
-        }
-    }
-    return origins;
-}
-
-Result<void> readTopTree(const layout::Model& record, std::span<const std::uint8_t> planes,
-                         std::span<const layout::Region> regions, OctreeModel& model) {
-    const std::size_t n = record.topNodeCount;
-    model.topTree.depth = record.depth - layout::kMaxRegionDepth;
-    PFVOX_CHECK(octree::linkPlanes(octree::cutPlanes(planes, n, record.topBranchCount, false), model.topTree,
-                                   nullptr));
-    if (model.topTree.farTable.size() != record.topFarCount) {
-        return fail(ErrorCode::BadStructure, "wrong number of far pointers");
-    }
-    model.indexRegions();
-    const std::vector<glm::ivec3> origins = topLeafOrigins(model);
-    if (origins.size() != regions.size()) {
-        return fail(ErrorCode::BadStructure,
-                    fmt::format("{} leaves for {} regions", origins.size(), regions.size()));
-    }
-    for (std::size_t i = 0; i < origins.size(); ++i) {
-        const auto& o = regions[i].origin;
-        if (glm::ivec3{o[0], o[1], o[2]} != origins[i] || regions[i].depth != layout::kMaxRegionDepth) {
-            return fail(ErrorCode::BadStructure, fmt::format("region {} does not lie in its leaf", i));
-        }
-    }
-    return {};
 }
 
 glm::ivec3 toVec(const std::array<std::int32_t, 3>& a) {
@@ -247,17 +187,15 @@ class Reading {
     }
 
     bool readModels(const Tables& tables, const SectionIndex& index, const NameList& names) {
-        std::size_t topOffset = 0;
+        auto topTrees = TopTreeReader::make(file_, index, tables.models);
+        if (!topTrees) {
+            outcome_.faults.push_back(topTrees.error());
+            return false;
+        }
         for (const layout::Model& record : tables.models) {
             OctreeModel& model = outcome_.asset.models.emplace_back(modelFromRecord(record, names));
-            if (record.topNodeCount == 0) continue;
-            auto result = readTopTree(
-                record, std::span(tables.topTrees).subspan(topOffset, 2 * std::size_t{record.topNodeCount}),
-                std::span(tables.regions).subspan(record.firstRegion, record.regionCount), model);
-            if (!result)
-                result = failInSection(*index.find("TOPT"), result.error().code, describe(result.error()));
-            if (!accept(result)) return false;
-            topOffset += 2 * std::size_t{record.topNodeCount};
+            const auto regions = std::span(tables.regions).subspan(record.firstRegion, record.regionCount);
+            if (record.topNodeCount != 0 && !accept(topTrees->readNext(record, regions, model))) return false;
         }
         return true;
     }

@@ -1,18 +1,15 @@
 // encodePfVox: an OctreeAsset as sections. What can be computed from the masks is not written
 // (node_planes.hpp).
-#include <tbb/parallel_for.h>
-
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <iterator>
 #include <map>
 #include <pfvox/pf_vox.hpp>
 
 #include "octree/node_planes.hpp"
 #include "pf_vox/layout.hpp"
-#include "pf_vox/lod_codec.hpp"
+#include "pf_vox/region_writer.hpp"
 #include "pf_vox/section_writer.hpp"
 
 namespace pfvox {
@@ -151,27 +148,25 @@ Result<void> checkReferences(const OctreeAsset& asset) {
         }
     }
     for (const OctreeModel& model : asset.models) {
-        for (const OctreeRegion& region : model.regions) PFVOX_CHECK(checkLod(region, asset.materials.size()));
+        for (const OctreeRegion& region : model.regions)
+            PFVOX_CHECK(checkLod(region, asset.materials.size()));
     }
     return {};
 }
 
-/// MODL, REGN, TOPT and PALT: the tables that say where everything is.
+/// MODL, REGN, TOPT or TOPN, and PALT: the tables that say where everything is.
 struct ModelTables {
     std::vector<layout::Model> models;
     std::vector<layout::Region> regions;
-    SectionContent topTrees{.fourcc = "TOPT"};
+    SectionContent topTrees;
     std::vector<std::uint16_t> palettes;
     std::vector<const OctreeRegion*> sources;  ///< of each region record
 
-    ModelTables(const OctreeAsset& asset, NameTable& names) {
+    ModelTables(const OctreeAsset& asset, Profile profile, NameTable& names)
+        : topTrees(emptyTopTrees(profile)) {
         for (const OctreeModel& model : asset.models) {
             models.push_back(toLayout(model, static_cast<std::uint32_t>(regions.size()), names));
-            if (!model.topTree.nodes.empty()) {
-                const std::vector<std::uint8_t> planes = octree::splitPlanes(model.topTree, {});
-                topTrees.raw.insert(topTrees.raw.end(), planes.begin(), planes.end());
-                topTrees.count += model.topTree.nodes.size();
-            }
+            if (!model.topTree.nodes.empty()) appendTopTree(model.topTree, profile, topTrees);
             for (const OctreeRegion& region : model.regions) {
                 regions.push_back(toLayout(region, static_cast<std::uint32_t>(palettes.size())));
                 palettes.insert(palettes.end(), region.palette.begin(), region.palette.end());
@@ -220,44 +215,12 @@ void addInfoSections(const OctreeAsset& asset, NameTable& names, std::vector<Sec
     sections.push_back(std::move(metaSection));
 }
 
-/// The sections of one region, packed.
-std::vector<SectionContent> packRegion(const OctreeRegion& region, std::uint32_t id,
-                                       const std::vector<Material>& materials) {
-    std::vector<SectionContent> sections;
-    sections.push_back({.fourcc = "MASK",
-                        .region = id,
-                        .count = region.tree.nodes.size(),
-                        .raw = octree::splitPlanes(region.tree, region.lookup)});
-    sections.push_back({.fourcc = "ATTR",
-                        .region = id,
-                        .count = region.valueCount(),
-                        .texture = Texture::LocalSymbols,
-                        .raw = region.values});
-    if (!region.lod.empty()) {
-        sections.push_back({.fourcc = "LODA",
-                            .region = id,
-                            .mustUnderstand = false,
-                            .count = region.lod.colors.size(),
-                            .raw = packLod(region, materials)});
-    }
-    return sections;
-}
-
-void addRegionSections(const OctreeAsset& asset, const ModelTables& tables,
-                       std::vector<SectionContent>& sections) {
-    std::vector<std::vector<SectionContent>> ofRegions(tables.sources.size());
-    tbb::parallel_for(std::size_t{0}, ofRegions.size(), [&](std::size_t i) {
-        ofRegions[i] = packRegion(*tables.sources[i], static_cast<std::uint32_t>(i), asset.materials);
-    });
-    for (auto& ofRegion : ofRegions) std::ranges::move(ofRegion, std::back_inserter(sections));
-}
-
 }  // namespace
 
 Result<std::vector<std::byte>> encodePfVox(const OctreeAsset& asset, const EncodeSettings& settings) {
     PFVOX_CHECK(checkReferences(asset));
     NameTable names;
-    ModelTables tables(asset, names);
+    ModelTables tables(asset, settings.profile, names);
     if (tables.regions.size() >= layout::kNoRegion / 2 || tables.palettes.size() > 0xffffffffu) {
         return fail(ErrorCode::LimitExceeded,
                     fmt::format("{} regions do not fit one file", tables.regions.size()));
@@ -270,8 +233,9 @@ Result<std::vector<std::byte>> encodePfVox(const OctreeAsset& asset, const Encod
     sections.push_back(recordSection("PALT", tables.palettes));
     sections.push_back(names.section());
 
-    addRegionSections(asset, tables, sections);
-    const FileTraits traits{.optionalFeatures = asset.hollowed ? kPfVoxHollow : 0};
+    addRegionSections(tables.sources, asset.materials, settings.profile, sections);
+    const FileTraits traits{.requiredFeatures = settings.profile == Profile::Resident ? kPfVoxResident : 0,
+                            .optionalFeatures = asset.hollowed ? kPfVoxHollow : 0};
     return writeSections(std::move(sections), traits, settings);
 }
 

@@ -21,8 +21,11 @@ class RegionReader {
                               std::span<const std::uint16_t> palettes) const;
 
   private:
+    bool isPacked() const { return index_.profile() == Profile::Packed; }
     Result<const layout::Section*> require(RegionPart part, std::size_t id) const;
     Result<void> readPackedTree(std::size_t id, const layout::Region& record, OctreeRegion& region) const;
+    Result<std::vector<std::uint32_t>> readWords(RegionPart part, std::size_t id, std::uint64_t count) const;
+    Result<void> readResidentTree(std::size_t id, const layout::Region& record, OctreeRegion& region) const;
     Result<void> readValues(std::size_t id, const layout::Region& record, OctreeRegion& region) const;
     Result<void> readLod(std::size_t id, OctreeRegion& region) const;
 

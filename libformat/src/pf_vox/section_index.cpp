@@ -8,7 +8,7 @@ namespace pfvox {
 
 namespace {
 
-constexpr std::array<std::string_view, 10> kWholeFileSections{"MATL", "MODL", "REGN", "TOPT", "PALT",
+constexpr std::array<std::string_view, 11> kWholeFileSections{"MATL", "MODL", "REGN", "TOPT", "TOPN", "PALT",
                                                               "INST", "NAME", "META", "LAYR", "CAMR"};
 
 std::string_view nameOf(const layout::Section& section) {
@@ -17,13 +17,17 @@ std::string_view nameOf(const layout::Section& section) {
 
 }  // namespace
 
-Result<void> SectionIndex::addToRegion(std::size_t part, const layout::Section& section,
+Result<void> SectionIndex::addToRegion(RegionPart part, const layout::Section& section,
                                        std::size_t sectionCount) {
+    if (profileOf(part) != profile_)
+        return failInSection(section, ErrorCode::BadStructure, "belongs to the other profile");
+    if (profile_ == Profile::Resident && section.codec != layout::Codec::Raw)
+        return failInSection(section, ErrorCode::BadStructure, "is compressed in a resident file");
     // A region needs at least one section of its own, so an honest id is below the number of sections.
     if (section.region >= sectionCount) {
         return failInSection(section, ErrorCode::BadStructure, "the region does not exist");
     }
-    auto& list = ofRegions_[part];
+    auto& list = ofRegions_[static_cast<std::size_t>(part)];
     if (list.size() <= section.region) list.resize(section.region + 1, nullptr);
     if (list[section.region] != nullptr)
         return failInSection(section, ErrorCode::BadStructure, "occurs twice");
@@ -33,12 +37,13 @@ Result<void> SectionIndex::addToRegion(std::size_t part, const layout::Section& 
 
 Result<SectionIndex> SectionIndex::make(const FileHead& head, Diagnostics& diagnostics) {
     SectionIndex index;
+    if ((head.header.requiredFeatures & kPfVoxResident) != 0) index.profile_ = Profile::Resident;
     for (const layout::Section& section : head.sections) {
         const std::string_view name = nameOf(section);
-        const auto part = static_cast<std::size_t>(std::ranges::find(kRegionSections, name) -
-                                                   kRegionSections.begin());
+        const auto part =
+            static_cast<std::size_t>(std::ranges::find(kRegionSections, name) - kRegionSections.begin());
         if (part < kRegionSections.size()) {
-            PFVOX_CHECK(index.addToRegion(part, section, head.sections.size()));
+            PFVOX_CHECK(index.addToRegion(static_cast<RegionPart>(part), section, head.sections.size()));
         } else if (std::ranges::find(kWholeFileSections, name) != kWholeFileSections.end()) {
             if (index.find(name) != nullptr)
                 return failInSection(section, ErrorCode::BadStructure, "occurs twice");

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <pfvox/error.hpp>
+#include <pfvox/pf_vox.hpp>
 #include <string_view>
 #include <vector>
 
@@ -11,15 +12,22 @@
 
 namespace pfvox {
 
-/// The sections that belong to one region, in the order of kRegionSections.
-enum class RegionPart : std::uint8_t { Masks, Values, Lod };
-inline constexpr std::array<std::string_view, 3> kRegionSections{"MASK", "ATTR", "LODA"};
+/// The sections that belong to one region, in the order of kRegionSections: first those of a packed file,
+/// then those of a resident one.
+enum class RegionPart : std::uint8_t { Masks, Values, Lod, Nodes, Lookup, FarTable, ValueBytes, LodWords };
+inline constexpr std::array<std::string_view, 8> kRegionSections{"MASK", "ATTR", "LODA", "NODE",
+                                                                 "LOOK", "FARP", "VALU", "LODR"};
+constexpr Profile profileOf(RegionPart part) {
+    return part < RegionPart::Nodes ? Profile::Packed : Profile::Resident;
+}
 
 class SectionIndex {
   public:
-    /// Errors: UnsupportedFeature (unknown required section), BadStructure (section twice or for an absurd
-    /// region).
+    /// Errors: UnsupportedFeature (unknown required section), BadStructure (section twice, for an absurd
+    /// region or of the other profile).
     static Result<SectionIndex> make(const FileHead& head, Diagnostics& diagnostics);
+
+    Profile profile() const { return profile_; }
 
     /// The section of the whole file with this name, or null.
     const layout::Section* find(std::string_view fourcc) const;
@@ -32,8 +40,9 @@ class SectionIndex {
     std::size_t regionCount() const;
 
   private:
-    Result<void> addToRegion(std::size_t part, const layout::Section& section, std::size_t sectionCount);
+    Result<void> addToRegion(RegionPart part, const layout::Section& section, std::size_t sectionCount);
 
+    Profile profile_ = Profile::Packed;
     std::vector<const layout::Section*> whole_;
     std::array<std::vector<const layout::Section*>, kRegionSections.size()> ofRegions_;  ///< by part, region
 };

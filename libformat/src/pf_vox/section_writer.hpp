@@ -26,6 +26,7 @@ struct SectionContent {
     std::uint32_t region = layout::kNoRegion;
     bool mustUnderstand = true;
     std::uint64_t count = 0;
+    bool compress = true;
     Texture texture = Texture::General;
     std::vector<std::uint8_t> raw = {};
 };
