@@ -3,6 +3,8 @@
 //
 //     [import]
 //     voxelSizeMetres = 0.05
+//     [build]
+//     lod = true
 //     [encode]
 //     zstdLevel = 9
 //     [[override]]
@@ -14,6 +16,7 @@
 #include <optional>
 #include <pfvox/convert.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace pfvox::tools {
@@ -24,7 +27,10 @@ struct SettingsPatch {
     std::optional<bool> includeHidden;
     std::optional<int> frame;
     std::optional<double> voxelSizeMetres;
+    std::optional<bool> hollow;
+    std::optional<bool> lod;
     std::optional<int> zstdLevel;
+    std::optional<Profile> profile;
 
     void applyTo(ConvertSettings& settings) const;
 };
@@ -35,6 +41,9 @@ inline constexpr double kMinVoxelSizeMetres = 1e-6;
 inline constexpr double kMaxVoxelSizeMetres = 1e6;
 inline constexpr int kMaxZstdLevel = 19;
 inline constexpr int kArchiveZstdLevel = 9;
+
+/// "packed" or "resident".
+std::optional<Profile> parseProfile(std::string_view name);
 
 class SettingsFile {
   public:
