@@ -1,5 +1,6 @@
 // Rates and sizes of libformat on the measured models: scatter into bricks, build, encode, decode.
 // Run: bench_format [--benchmark_filter=shell]
+#include <pfvox/hollow.hpp>
 #include <pfvox/octree.hpp>
 #include <pfvox/pf_vox.hpp>
 
@@ -70,26 +71,56 @@ void encode(benchmark::State& state, const std::string& name) {
     setBytesPerVoxel(state, "disk_B/voxel", bytes.size(), source);
 }
 
-void decode(benchmark::State& state, const std::string& name) {
+void buildWithLod(benchmark::State& state, const std::string& name) {
+    const MeasuredModel& source = model(name);
+    const VoxelAsset asset = scatter(source);
+    OctreeAsset built;
+    for (auto _ : state) built = buildOctrees(asset, Limits{}, {.lod = true}).value();
+    setRate(state, source);
+    const std::vector<std::byte> bytes = encodePfVox(built, {}).value();
+    setBytesPerVoxel(state, "disk_B/voxel", bytes.size(), source);
+}
+
+void hollow(benchmark::State& state, const std::string& name) {
+    const MeasuredModel& source = model(name);
+    VoxelAsset asset = scatter(source);
+    HollowReport report;
+    for (auto _ : state) report = hollowSolids(asset);
+    setRate(state, source);
+    state.counters["hidden"] = static_cast<double>(report.hiddenVoxels);
+    const std::vector<std::byte> bytes = encodePfVox(buildOctrees(asset, Limits{}).value(), {}).value();
+    setBytesPerVoxel(state, "disk_B/voxel", bytes.size(), source);
+}
+
+void decodeProfile(benchmark::State& state, const std::string& name, Profile profile) {
     const MeasuredModel& source = model(name);
     const std::vector<std::byte> bytes =
-        encodePfVox(buildOctrees(scatter(source), Limits{}).value(), {}).value();
+        encodePfVox(buildOctrees(scatter(source), Limits{}).value(), {.profile = profile}).value();
     DiagnosticList diagnostics;
     for (auto _ : state) {
         OctreeAsset asset = decodePfVox(bytes, Limits{}, diagnostics).value();
         benchmark::DoNotOptimize(asset);
     }
     setRate(state, source);
+    setBytesPerVoxel(state, "disk_B/voxel", bytes.size(), source);
+}
+
+void decode(benchmark::State& state, const std::string& name) { decodeProfile(state, name, Profile::Packed); }
+void decodeResident(benchmark::State& state, const std::string& name) {
+    decodeProfile(state, name, Profile::Resident);
 }
 
 void registerAll() {
     for (const std::string name : kMeasuredModelNames) {
         addBenchmark(name, "scatter", scatterBricks);
         addBenchmark(name, "build", buildFromBricks);
+        addBenchmark(name, "build_lod", buildWithLod);
+        addBenchmark(name, "hollow", hollow);
         addBenchmark(name, "complete", completeBuild);
         addBenchmark(name, "through_model", buildThroughModel);
         addBenchmark(name, "encode", encode)->Arg(3)->Arg(9);
         addBenchmark(name, "decode", decode);
+        addBenchmark(name, "decode_resident", decodeResident);
     }
 }
 

@@ -6,7 +6,7 @@ function(pfvox_compile_options target)
     -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wold-style-cast
     -Wnon-virtual-dtor -Woverloaded-virtual -Wcast-qual -Wundef
     -Wno-missing-field-initializers # naming some fields and leaving the others to their defaults is our style
-    -Wno-restrict) # GCC 12 warns falsely about string + literal at -O3 (GCC bug 105651)
+    $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>) # GCC 12 warns falsely about string + literal at -O3 (GCC bug 105651)
   if(PFVOX_WARNINGS_AS_ERRORS)
     target_compile_options(${target} PRIVATE -Werror)
   endif()

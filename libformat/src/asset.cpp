@@ -40,6 +40,11 @@ Material quantised(const Material& material) {
     return q;
 }
 
+bool isOpaque(const Material& material) {
+    return material.type != MaterialType::Glass && material.type != MaterialType::Media &&
+           material.transparency == 0.0f && material.baseColor.a == 255;
+}
+
 namespace {
 
 /// Calls visit(MaterialIndex&) for every brick voxel, tile and region that holds a material.

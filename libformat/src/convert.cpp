@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <chrono>
 #include <pfvox/convert.hpp>
+#include <pfvox/hollow.hpp>
 
 #include "io/files.hpp"
 #include "io/hash.hpp"
@@ -52,8 +53,9 @@ Error withFile(Error error, const std::filesystem::path& file) {
 ContentKey contentKey(std::span<const std::byte> source, const ConvertSettings& settings) {
     io::Xxh3_128 hash;
     hash.update(kConverterVersion);
-    hash.update(
-        fmt::format("pf_vox {}.{} zstd {} ", kPfVoxVersionMajor, kPfVoxVersionMinor, settings.zstdLevel));
+    hash.update(fmt::format("pf_vox {}.{} hollow {} lod {} zstd {} profile {} ", kPfVoxVersionMajor,
+                            kPfVoxVersionMinor, settings.hollow, settings.build.lod, settings.zstdLevel,
+                            static_cast<int>(settings.profile)));
     hash.update(canonicalText(settings.import));
     hash.update(source);
     return {hash.digest()};
@@ -69,13 +71,19 @@ Result<std::vector<std::byte>> convertBytes(std::span<const std::byte> bytes,
         PFVOX_TRY(VoxelAsset, asset, importBytes(bytes, source, settings.import, limits, diagnostics));
         compactMaterials(asset);
         report.importSeconds = watch.lap();
-        return buildOctrees(asset, limits);
+        if (settings.hollow) {
+            hollowSolids(asset);
+            compactMaterials(asset);  // some were only inside
+        }
+        return buildOctrees(asset, limits, settings.build);
     }();
     if (!built) return tl::make_unexpected(withFile(built.error(), source));
     count(*built, report);
     report.buildSeconds = watch.lap();
 
-    const EncodeSettings encode{.zstdLevel = settings.zstdLevel, .contentKey = contentKey(bytes, settings)};
+    const EncodeSettings encode{.zstdLevel = settings.zstdLevel,
+                                .contentKey = contentKey(bytes, settings),
+                                .profile = settings.profile};
     auto encoded = encodePfVox(*built, encode);
     if (!encoded) return tl::make_unexpected(withFile(std::move(encoded).error(), source));
     report.outputBytes = encoded->size();

@@ -187,4 +187,47 @@ TEST_F(Vox2pf, interruptGives130AndNoTemporaryFile) {
     }
 }
 
+/// Converts the statue with these options and returns what info tells.
+class Vox2pfOctreeOptions : public Vox2pf {
+  protected:
+    std::string infoOf(std::vector<std::string> options) {
+        addSourceOnce();
+        options.insert(options.begin(), {"statue.vox", "-o", "statue.pf_vox"});
+        EXPECT_EQ(run(options).exitCode, 0);
+        EXPECT_EQ(run({"validate", "statue.pf_vox"}).exitCode, 0);
+        return run({"info", "statue.pf_vox"}).out;
+    }
+
+  private:
+    void addSourceOnce() {
+        if (!exists("statue.vox")) addSource("statue.vox", "statue.vox");
+    }
+};
+
+TEST_F(Vox2pfOctreeOptions, hollowIsRecordedAndCanBeTakenBack) {
+    EXPECT_THAT(infoOf({"--hollow"}), HasSubstr(", hollow"));
+    writeText(folder / "s.toml", "[build]\nhollow = true\n");
+    EXPECT_THAT(infoOf({"--settings", "s.toml"}), HasSubstr(", hollow"));
+    EXPECT_THAT(infoOf({"--settings", "s.toml", "--no-hollow"}), Not(HasSubstr(", hollow")));
+}
+
+TEST_F(Vox2pfOctreeOptions, lodAddsASectionAndIsAnotherContent) {
+    EXPECT_THAT(infoOf({}), Not(HasSubstr("LODA")));
+    EXPECT_THAT(infoOf({"--lod"}), HasSubstr("LODA")) << "not up to date with other settings";
+    writeText(folder / "s.toml", "[build]\nlod = true\n");
+    EXPECT_THAT(infoOf({"--settings", "s.toml"}), HasSubstr("LODA"));
+}
+
+TEST_F(Vox2pfOctreeOptions, profileIsPackedOrResident) {
+    EXPECT_THAT(infoOf({"--profile", "resident"}), AllOf(HasSubstr(", resident"), HasSubstr("NODE")));
+    EXPECT_THAT(infoOf({"--profile", "packed"}), AllOf(Not(HasSubstr(", resident")), HasSubstr("MASK")));
+    writeText(folder / "s.toml", "[encode]\nprofile = \"resident\"\n");
+    EXPECT_THAT(infoOf({"--settings", "s.toml"}), HasSubstr(", resident"));
+    EXPECT_EQ(run({"statue.vox", "-o", "x.pf_vox", "--profile", "small"}).exitCode, 2);
+    writeText(folder / "s.toml", "[encode]\nprofile = 1\n");
+    const ProcessResult result = run({"statue.vox", "-o", "x.pf_vox", "--settings", "s.toml"});
+    EXPECT_EQ(result.exitCode, 4);
+    EXPECT_THAT(result.err, AllOf(HasSubstr("line 2"), HasSubstr("\"resident\"")));
+}
+
 }  // namespace pfvox::test

@@ -16,15 +16,24 @@ namespace {
 using test::Bytes;
 using test::OpenFile;
 
-/// A small file with a feature of every kind: a top tree of three regions, a hoisted value, an empty model.
+/// A small file with a feature of every kind: a top tree of three regions, a hoisted value, an empty model, levels of
+/// detail.
+Bytes makeSampleFile(Profile profile) {
+    std::vector<VoxelModel> models;
+    models.push_back(test::patchyModel(11, 20));
+    models.push_back(test::boxModel({250, 0, 0}, {262, 10, 3}, 1));
+    models.emplace_back();
+    const auto built = buildOctrees(test::assetOf(std::move(models)), Limits{}, {.lod = true});
+    return encodePfVox(built.value(), {.profile = profile}).value();
+}
+
 const Bytes& sampleFile() {
-    static const Bytes file = [] {
-        std::vector<VoxelModel> models;
-        models.push_back(test::patchyModel(11, 20));
-        models.push_back(test::boxModel({250, 0, 0}, {262, 10, 3}, 1));
-        models.emplace_back();
-        return encodePfVox(buildOctrees(test::assetOf(std::move(models)), Limits{}).value(), {}).value();
-    }();
+    static const Bytes file = makeSampleFile(Profile::Packed);
+    return file;
+}
+
+const Bytes& residentFile() {
+    static const Bytes file = makeSampleFile(Profile::Resident);
     return file;
 }
 
@@ -194,6 +203,16 @@ std::vector<Lie> lies() {
          [](OpenFile& open) { open.part("MASK", 0).raw.back() = 0; }},
         {"root without inner children", ErrorCode::BadStructure, poke("MASK", 0, 0, 0)},
         {"value outside its palette", ErrorCode::BadReference, poke("ATTR", 0, 0, 200)},
+        {"level of detail of a material outside its palette", ErrorCode::BadReference,
+         [](OpenFile& open) { open.part("LODA", 0).raw.back() = 200; }},
+        {"level of detail of another number of nodes", ErrorCode::BadStructure,
+         [](OpenFile& open) { open.part("LODA", 0).raw.pop_back(); }},
+        {"level of detail twice", ErrorCode::BadStructure,
+         [](OpenFile& open) { open.parts.push_back(open.part("LODA", 0)); }},
+        {"nodes of the other profile", ErrorCode::BadStructure,
+         [](OpenFile& open) { open.parts.push_back(test::openFile(residentFile()).part("NODE", 0)); }},
+        {"resident by its header only", ErrorCode::BadStructure,
+         [](OpenFile& open) { open.header.requiredFeatures = kPfVoxResident; }},
         {"material that does not exist", ErrorCode::BadReference, poke("PALT", layout::kNoRegion, 0, 77)},
         {"instance of no model", ErrorCode::BadReference,
          edit<Instance>("INST", 1, [](Instance& i) { i.model = 12; })},
@@ -225,6 +244,111 @@ TEST(PfVoxHostile, LiesWithRepairedHashes) {
         lie.tell(open);
         expectRefused(test::closeFile(std::move(open)), lie.code);
     }
+}
+
+/// Adds to a word of a resident section.
+std::function<void(OpenFile&)> addToWord(const char* fourcc, std::uint32_t id, std::size_t at, std::uint32_t amount) {
+    return [=](OpenFile& open) {
+        std::uint8_t* place = open.part(fourcc, id).raw.data() + 4 * at;
+        std::uint32_t word = 0;
+        std::memcpy(&word, place, sizeof word);
+        word += amount;
+        std::memcpy(place, &word, sizeof word);
+    };
+}
+
+std::vector<Lie> residentLies() {
+    using layout::Region;
+    const auto drop = [](const char* fourcc) {
+        return [=](OpenFile& open) {
+            const OpenFile::Part* gone = &open.part(fourcc, fourcc[0] == 'T' ? layout::kNoRegion : 0);
+            open.parts.erase(open.parts.begin() + (gone - open.parts.data()));
+        };
+    };
+    constexpr std::uint32_t kPointerOne = 1u << node::kPointerShift;
+    return {
+        {"root that points too far", ErrorCode::BadStructure, addToWord("NODE", 0, 0, kPointerOne)},
+        {"root that points to itself", ErrorCode::BadStructure, addToWord("NODE", 0, 0, 0u - kPointerOne)},
+        {"pointer behind the end", ErrorCode::BadStructure, addToWord("NODE", 0, 0, 0x7000u * kPointerOne)},
+        {"far bit without a far table", ErrorCode::BadStructure, addToWord("NODE", 0, 0, node::kFarBit)},
+        {"leaf that is not valid", ErrorCode::BadStructure,
+         [](OpenFile& open) { open.part("NODE", 0).raw.at(1) = 0; }},
+        {"last node that points on", ErrorCode::BadStructure,
+         [](OpenFile& open) { open.part("NODE", 0).raw.back() = 0x40; }},
+        {"node without children", ErrorCode::BadStructure,
+         [](OpenFile& open) { std::fill_n(open.part("NODE", 0).raw.end() - 4, 4, std::uint8_t{0}); }},
+        {"value pointer off by one", ErrorCode::BadStructure, addToWord("LOOK", 0, 1, 1u << 8)},
+        {"value of no child", ErrorCode::BadStructure,
+         [](OpenFile& open) {
+             auto& nodes = open.part("NODE", 1).raw;
+             auto& look = open.part("LOOK", 1).raw;
+             for (std::size_t i = 0; i < nodes.size(); i += 4) {
+                 if (nodes[i + 1] != 0xff && look[i] != 0) look[i] = 0xff;
+             }
+         }},
+        {"leaf without a value", ErrorCode::BadStructure,
+         [](OpenFile& open) { open.part("LOOK", 1).raw.at(0) = 0; }},
+        {"value outside its palette", ErrorCode::BadReference,
+         [](OpenFile& open) { open.part("VALU", 0).raw.at(0) = 200; }},
+        {"top tree that points to itself", ErrorCode::BadStructure,
+         addToWord("TOPN", layout::kNoRegion, 0, kPointerOne)},
+        {"more nodes than there are", ErrorCode::BadStructure,
+         edit<Region>("REGN", 0, [](Region& r) { ++r.nodeCount; })},
+        {"other number of branches", ErrorCode::BadStructure,
+         edit<Region>("REGN", 0, [](Region& r) { ++r.branchCount; })},
+        {"too flat for its nodes", ErrorCode::BadStructure, edit<Region>("REGN", 0,
+                                                                         [](Region& r) {
+                                                                             r.depth = 1;
+                                                                             r.boundsMin = {0, 0, 0};
+                                                                             r.boundsMax = {1, 1, 1};
+                                                                         })},
+        {"far pointers that are not there", ErrorCode::BadStructure,
+         edit<Region>("REGN", 0, [](Region& r) { r.farCount = 7; })},
+        {"level of detail outside its palette", ErrorCode::BadReference,
+         [](OpenFile& open) { open.part("LODR", 0).raw.back() = 200; }},
+        {"no nodes", ErrorCode::BadStructure, drop("NODE")},
+        {"no lookup", ErrorCode::BadStructure, drop("LOOK")},
+        {"no values", ErrorCode::BadStructure, drop("VALU")},
+        {"no top tree", ErrorCode::BadStructure, drop("TOPN")},
+        {"packed by its header", ErrorCode::BadStructure, [](OpenFile& open) { open.header.requiredFeatures = 0; }},
+    };
+}
+
+TEST(PfVoxHostile, ResidentLiesWithRepairedHashes) {
+    ASSERT_TRUE(decode(test::closeFile(test::openFile(residentFile()))));
+    for (const Lie& lie : residentLies()) {
+        SCOPED_TRACE(lie.name);
+        OpenFile open = test::openFile(residentFile());
+        lie.tell(open);
+        expectRefused(test::closeFile(std::move(open)), lie.code);
+    }
+}
+
+/// Words that are accepted must be those that the builder's rules give: the masks alone decide.
+TEST(PfVoxHostile, DamagedResidentWordsAreRefusedOrWhatTheMasksSay) {
+    std::mt19937 random(6);
+    std::size_t accepted = 0;
+    for (int round = 0; round < 4000; ++round) {
+        OpenFile open = test::openFile(residentFile());
+        const char* names[] = {"NODE", "LOOK", "VALU"};
+        OpenFile::Part& part = open.part(names[random() % 3], static_cast<std::uint32_t>(random() % 3));
+        const std::size_t at = random() % part.raw.size();
+        part.raw[at] = static_cast<std::uint8_t>(part.raw[at] ^ (1u << random() % 8));
+        const auto asset = decode(test::closeFile(std::move(open)));
+        if (!asset) continue;
+        ++accepted;
+        const auto packed = encodePfVox(*asset, {});
+        ASSERT_TRUE(packed);
+        const auto again = decode(*packed);
+        ASSERT_TRUE(again) << describe(again.error());
+        for (std::size_t m = 0; m < asset->models.size(); ++m) {
+            for (std::size_t r = 0; r < asset->models[m].regions.size(); ++r) {
+                EXPECT_EQ(again->models[m].regions[r].tree.nodes, asset->models[m].regions[r].tree.nodes);
+                EXPECT_EQ(again->models[m].regions[r].lookup, asset->models[m].regions[r].lookup);
+            }
+        }
+    }
+    EXPECT_GT(accepted, 0u);
 }
 
 /// Changes the table entry of the first compressed section.

@@ -143,4 +143,11 @@ inline std::vector<Voxel> voxelsIn(const VoxelModel& model, const VoxelBox& box)
     return voxels;
 }
 
+/// The same voxels, one by one: VoxelModel itself cannot be copied.
+inline VoxelModel copyOf(const VoxelModel& model, const VoxelBox& box) {
+    VoxelModel copy;
+    for (const Voxel& v : voxelsIn(model, box)) copy.set(v.position, v.material);
+    return copy;
+}
+
 }  // namespace pfvox::test

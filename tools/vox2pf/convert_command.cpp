@@ -59,6 +59,30 @@ void addInputOutputOptions(CLI::App& command, ConvertOptions& options) {
         ->group(group::kInputOutput);
 }
 
+/// What decides how an asset is built and written.
+void addOctreeOptions(CLI::App& command, ConvertOptions& options) {
+    SettingsPatch& patch = options.patch;
+    command
+        .add_flag_function(
+            "--hollow,!--no-hollow", [&patch](std::int64_t count) { patch.hollow = count > 0; },
+            "let voxels that cannot be seen take another material (lossy inside)")
+        ->group(group::kConversion);
+    command
+        .add_flag_function(
+            "--lod,!--no-lod", [&patch](std::int64_t count) { patch.lod = count > 0; },
+            "add colours for level of detail, at about twice the size")
+        ->group(group::kConversion);
+    command.add_flag("--archive", options.archive, "compress harder (zstd 9 instead of 3)")
+        ->group(group::kConversion);
+    command
+        .add_option_function<std::string>(
+            "--profile", [&patch](const std::string& name) { patch.profile = parseProfile(name); },
+            "packed (default): small; resident: as the GPU reads it")
+        ->option_text("NAME")
+        ->check(CLI::IsMember({"packed", "resident"}))
+        ->group(group::kConversion);
+}
+
 void addConversionOptions(CLI::App& command, ConvertOptions& options) {
     SettingsPatch& patch = options.patch;
     const auto setTrue = [](std::optional<bool>& flag) { return [&flag](std::int64_t) { flag = true; }; };
@@ -103,8 +127,7 @@ void addConversionOptions(CLI::App& command, ConvertOptions& options) {
         ->option_text("AXIS")
         ->transform(CLI::Transformer(std::map<std::string, UpAxis>{{"y", UpAxis::Y}, {"z", UpAxis::Z}}))
         ->group(group::kConversion);
-    command.add_flag("--archive", options.archive, "compress harder (zstd 9 instead of 3)")
-        ->group(group::kConversion);
+    addOctreeOptions(command, options);
 }
 
 void addBuildOptions(CLI::App& command, ConvertOptions& options) {

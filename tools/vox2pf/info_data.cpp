@@ -109,6 +109,7 @@ Json infoJson(const FileInfo& info) {
     json["file"] = info.file.string();
     json["formatVersion"] =
         std::to_string(info.header.versionMajor) + "." + std::to_string(info.header.versionMinor);
+    json["features"] = info.header.featureNames();
     json["fileBytes"] = info.header.fileBytes;
     json["contentKey"] = info.header.contentKey.hex();
     json["source"] = {{"format", info.asset.source.format},

@@ -32,9 +32,11 @@ std::string moreLine(std::size_t count, std::size_t shown) {
 
 std::string headline(const FileInfo& info) {
     const SourceInfo& source = info.asset.source;
-    return fmt::format("PF_VOX {}.{}, {}, from {}, {} m voxels, content key {}\n", info.header.versionMajor,
-                       info.header.versionMinor, formatBytes(info.header.fileBytes), orDash(source.format),
-                       source.voxelSizeMetres, info.header.contentKey.hex());
+    std::string features;
+    for (const std::string& name : info.header.featureNames()) features += ", " + name;
+    return fmt::format("PF_VOX {}.{}{}, {}, from {}, {} m voxels, content key {}\n", info.header.versionMajor,
+                       info.header.versionMinor, features, formatBytes(info.header.fileBytes),
+                       orDash(source.format), source.voxelSizeMetres, info.header.contentKey.hex());
 }
 
 std::string modelTable(const FileInfo& info, std::size_t maxRows) {

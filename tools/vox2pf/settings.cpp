@@ -30,7 +30,16 @@ void SettingsPatch::applyTo(ConvertSettings& settings) const {
     assignIfSet(settings.import.vdb.grids, vdbGrids);
     assignIfSet(settings.import.vdb.threshold, vdbThreshold);
     assignIfSet(settings.import.vdb.upAxis, vdbUpAxis);
+    assignIfSet(settings.hollow, hollow);
+    assignIfSet(settings.build.lod, lod);
     assignIfSet(settings.zstdLevel, zstdLevel);
+    assignIfSet(settings.profile, profile);
+}
+
+std::optional<Profile> parseProfile(std::string_view name) {
+    if (name == "packed") return Profile::Packed;
+    if (name == "resident") return Profile::Resident;
+    return std::nullopt;
 }
 
 ConvertSettings SettingsFile::settingsFor(const std::filesystem::path& relative,
@@ -75,9 +84,8 @@ class SettingsReader {
 
     tl::unexpected<Error> unknown(const toml::key& key, std::string_view kind, const Names& known) const {
         const auto nearest = nearestWord(key.str(), known);
-        const std::string hint = nearest         ? fmt::format("; did you mean {}?", *nearest)
-                                 : known.empty() ? "; there are none yet"
-                                                 : fmt::format("; there are {}", fmt::join(known, ", "));
+        const std::string hint = nearest ? fmt::format("; did you mean {}?", *nearest)
+                                         : fmt::format("; there are {}", fmt::join(known, ", "));
         return failAtRegion(ErrorCode::BadValue, key.source(),
                             fmt::format("unknown {} {}{}", kind, key.str(), hint));
     }
@@ -121,13 +129,9 @@ class SettingsReader {
                                 fmt::format("{} is a section", name.str()));
         }
         for (const auto& [key, value] : *table) {
-            if (name == "import") {
-                PFVOX_CHECK(readImportKey(key, value, patch));
-            } else if (name == "encode" && key == "zstdLevel") {
-                PFVOX_CHECK(readNumber(key, value, patch.zstdLevel, 1, kMaxZstdLevel));
-            } else {
-                return unknown(key, "key", name == "encode" ? Names{"zstdLevel"} : Names{});
-            }
+            PFVOX_CHECK(name == "import"  ? readImportKey(key, value, patch)
+                        : name == "build" ? readBuildKey(key, value, patch)
+                                          : readEncodeKey(key, value, patch));
         }
         return {};
     }
@@ -170,6 +174,25 @@ class SettingsReader {
         }
         field = axis == "z" ? UpAxis::Z : UpAxis::Y;
         return {};
+    }
+
+    Result<void> readBuildKey(const toml::key& key, const toml::node& value, SettingsPatch& patch) {
+        if (key == "hollow") return readFlag(key, value, patch.hollow);
+        if (key == "lod") return readFlag(key, value, patch.lod);
+        return unknown(key, "key", {"hollow", "lod"});
+    }
+
+    Result<void> readEncodeKey(const toml::key& key, const toml::node& value, SettingsPatch& patch) {
+        if (key == "zstdLevel") return readNumber(key, value, patch.zstdLevel, 1, kMaxZstdLevel);
+        if (key == "profile") return readProfile(key, value, patch.profile);
+        return unknown(key, "key", {"zstdLevel", "profile"});
+    }
+
+    Result<void> readProfile(const toml::key& key, const toml::node& node, std::optional<Profile>& field) {
+        field = parseProfile(node.value_or(std::string_view()));
+        if (field) return {};
+        return failAtRegion(ErrorCode::BadValue, node.source(),
+                            fmt::format("{} is \"packed\" or \"resident\"", key.str()));
     }
 
     Result<void> readFlag(const toml::key& key, const toml::node& node, std::optional<bool>& field) {

@@ -3,6 +3,8 @@
 //
 //     [import]
 //     voxelSizeMetres = 0.05
+//     [build]
+//     lod = true
 //     [encode]
 //     zstdLevel = 9
 //     [[override]]
@@ -14,6 +16,7 @@
 #include <optional>
 #include <pfvox/convert.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace pfvox::tools {
@@ -28,7 +31,10 @@ struct SettingsPatch {
     std::optional<std::vector<std::string>> vdbGrids;
     std::optional<double> vdbThreshold;
     std::optional<UpAxis> vdbUpAxis;
+    std::optional<bool> hollow;
+    std::optional<bool> lod;
     std::optional<int> zstdLevel;
+    std::optional<Profile> profile;
 
     void applyTo(ConvertSettings& settings) const;
 };
@@ -40,6 +46,9 @@ inline constexpr double kMaxVoxelSizeMetres = 1e6;
 inline constexpr double kMaxVdbThreshold = 1e30;
 inline constexpr int kMaxZstdLevel = 19;
 inline constexpr int kArchiveZstdLevel = 9;
+
+/// "packed" or "resident".
+std::optional<Profile> parseProfile(std::string_view name);
 
 class SettingsFile {
   public:

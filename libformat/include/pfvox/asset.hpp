@@ -46,6 +46,10 @@ struct Material {
 
 Material quantised(const Material& material);
 
+/// Whether nothing can be seen through a voxel of this material: neither glass nor media, no transparency, full
+/// alpha. Where in doubt it is not opaque, so that nothing behind it is taken for hidden.
+bool isOpaque(const Material& material);
+
 /// One placement of a model. Mirrors (negative determinant) are allowed: MagicaVoxel files contain them.
 struct Instance {
     std::uint32_t model = 0;                   ///< index into the asset's models
@@ -83,6 +87,7 @@ struct AssetInfo {
     std::vector<Layer> layers;
     std::vector<Camera> cameras;
     SourceInfo source;
+    bool hollowed = false;  ///< hidden voxels took another material (pfvox/hollow.hpp)
 };
 
 }  // namespace pfvox

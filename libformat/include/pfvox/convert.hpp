@@ -1,6 +1,6 @@
 // Convert: the whole way from a source file to a PF_VOX file, and nothing else.
 //
-//     import -> compact materials -> build and minimise -> encode -> atomic write
+//     import -> compact materials -> hollow (optional) -> build and minimise -> encode -> atomic write
 #pragma once
 
 #include <filesystem>
@@ -12,7 +12,10 @@ namespace pfvox {
 
 struct ConvertSettings {
     ImportSettings import;
+    bool hollow = false;  ///< hollowSolids before the build
+    BuildSettings build;
     int zstdLevel = 3;
+    Profile profile = Profile::Packed;
 };
 
 struct ConvertReport {

@@ -71,6 +71,22 @@ struct NodeTree {
     }
 };
 
+/// What stands for a whole node when it covers less than a pixel: one entry for each node, the root included,
+/// in node order. Only what can be seen counts: faces of voxels that no opaque neighbour in the same model
+/// covers.
+struct NodeLod {
+    /// R, G, B (sRGB encoded) and coverage, R in the low byte. The colour is the mean of the linear base
+    /// colours, weighted by the area of their visible faces; 0 where nothing is visible. Coverage x 255,
+    /// rounded up: the share of the node's columns of voxels that are not empty, mean of the three axes.
+    std::vector<std::uint32_t> colors;
+    /// Palette index of the material with the largest visible area, of equals the first; 0 where nothing is
+    /// visible.
+    std::vector<std::uint16_t> materials;
+
+    bool empty() const { return colors.empty(); }
+    bool operator==(const NodeLod&) const = default;
+};
+
 /// At most 256^3 voxels of a model: its own tree, values and palette.
 struct OctreeRegion {
     glm::ivec3 originVoxels{0};  ///< lower corner in model voxels
@@ -78,6 +94,7 @@ struct OctreeRegion {
     std::vector<std::uint32_t> lookup;   ///< one word for each node
     std::vector<std::uint8_t> values;    ///< palette indices of valueBytes() each, little endian
     std::vector<MaterialIndex> palette;  ///< palette index -> material of the asset, ascending
+    NodeLod lod;                         ///< empty unless asked for
     std::uint64_t voxelCount = 0;
     VoxelBox bounds;  ///< tight, in model voxels
 
@@ -114,12 +131,17 @@ struct OctreeAsset : AssetInfo {
     std::vector<OctreeModel> models;
 };
 
+struct BuildSettings {
+    bool lod = false;  ///< make OctreeRegion::lod
+};
+
 /// Builds the octrees of every model, exactly minimised: eight full children of one material become one leaf,
 /// recursively; no voxel changes its material. Materials, instances and the rest are taken over.
 /// Regions are built in parallel in the calling TBB arena; the result does not depend on the number of
 /// threads. Errors: LimitExceeded (depth, regions, materials), BadReference (a voxel's material does not
 /// exist).
-Result<OctreeAsset> buildOctrees(const VoxelAsset& asset, const Limits& limits);
+Result<OctreeAsset> buildOctrees(const VoxelAsset& asset, const Limits& limits,
+                                 const BuildSettings& settings = {});
 
 /// A model as a list of voxels: what generators and simulations have.
 struct VoxelList {

@@ -20,6 +20,12 @@ namespace pfvox {
 inline constexpr std::uint16_t kPfVoxVersionMajor = 1;
 inline constexpr std::uint16_t kPfVoxVersionMinor = 0;
 
+/// Required feature bits of the header.
+inline constexpr std::uint32_t kPfVoxResident = 1u << 0;  ///< "resident": Profile::Resident
+
+/// Optional feature bits of the header.
+inline constexpr std::uint32_t kPfVoxHollow = 1u << 0;  ///< "hollow": AssetInfo::hollowed
+
 /// xxh3-128 of everything that decides the content of an output: inputs, settings, tool and format version.
 /// All zero = unknown.
 struct ContentKey {
@@ -28,12 +34,19 @@ struct ContentKey {
     std::string hex() const;
 };
 
+/// Two forms of the same content. Which to use when: docs/decisions/007-resident.md.
+enum class Profile : std::uint8_t {
+    Packed,    ///< only what cannot be computed, compressed: smallest
+    Resident,  ///< the words that the GPU reads, raw and aligned: 5 to 15 times as large, nothing to compute
+};
+
 struct EncodeSettings {
     int zstdLevel = 3;      ///< 1 to 19
     ContentKey contentKey;  ///< kept in the header, for builds that skip what is up to date
+    Profile profile = Profile::Packed;
 };
 
-/// The bytes of a PF_VOX file, packed profile. Equal input and settings give equal bytes for any number of
+/// The bytes of a PF_VOX file. Equal input and settings give equal bytes for any number of
 /// threads. Errors: LimitExceeded when a count does not fit its field; BadReference when indices of the asset
 /// do not fit together.
 Result<std::vector<std::byte>> encodePfVox(const OctreeAsset& asset, const EncodeSettings& settings);
@@ -69,6 +82,9 @@ struct PfVoxHeader {
     std::uint64_t fileBytes = 0;
     ContentKey contentKey;
     std::vector<PfVoxSection> sections;
+
+    /// The names of the features: "resident", "hollow"; unknown ones as "bit 7".
+    std::vector<std::string> featureNames() const;
 };
 /// Errors: BadMagic, Truncated, UnsupportedVersion, UnsupportedFeature, ChecksumMismatch, BadStructure.
 Result<PfVoxHeader> readPfVoxHeader(std::span<const std::byte> bytes);

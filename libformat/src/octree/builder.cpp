@@ -9,6 +9,7 @@
 #include <pfvox/octree.hpp>
 #include <span>
 
+#include "octree/lod_builder.hpp"
 #include "octree/region_builder.hpp"
 #include "voxel_partition.hpp"
 
@@ -199,7 +200,8 @@ Result<OctreeModel> buildOctree(const VoxelList& list, std::size_t materialCount
     return buildModel(list.name, sourcesOf(partition), materialCount, limits);
 }
 
-Result<OctreeAsset> buildOctrees(const VoxelAsset& asset, const Limits& limits) {
+Result<OctreeAsset> buildOctrees(const VoxelAsset& asset, const Limits& limits,
+                                 const BuildSettings& settings) {
     if (asset.materials.size() > limits.maxMaterials) {
         return fail(ErrorCode::LimitExceeded, fmt::format("{} materials, more than maxMaterials = {}",
                                                           asset.materials.size(), limits.maxMaterials));
@@ -213,6 +215,10 @@ Result<OctreeAsset> buildOctrees(const VoxelAsset& asset, const Limits& limits) 
     }
     PFVOX_CHECK(runTasks(tasks, asset.materials.size()));
     for (OctreeModel& model : built.models) summarise(model);
+    if (settings.lod) {
+        for (std::size_t i = 0; i < built.models.size(); ++i)
+            octree::addLod(asset.models[i], asset.materials, built.models[i]);
+    }
     for (Material& material : built.materials) material = quantised(material);
     return built;
 }

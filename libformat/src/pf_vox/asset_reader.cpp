@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <numeric>
 
-#include "octree/node_planes.hpp"
 #include "pf_vox/info_reader.hpp"
+#include "pf_vox/lod_codec.hpp"
+#include "pf_vox/region_reader.hpp"
 #include "pf_vox/section_index.hpp"
+#include "pf_vox/top_tree_reader.hpp"
 
 namespace pfvox {
 
@@ -19,7 +21,6 @@ struct Tables {
     std::vector<layout::Model> models;
     std::vector<layout::Region> regions;
     std::vector<std::uint16_t> palettes;
-    std::vector<std::uint8_t> topTrees;
 };
 
 Result<void> checkRegionRecord(const layout::Region& r, std::size_t paletteSize) {
@@ -67,11 +68,13 @@ Result<void> checkModelRecord(const layout::Model& m, std::uint64_t nextRegion, 
 }
 
 /// What the octrees will take, so that nothing is allocated for a file that is too large.
-std::uint64_t decodedBytes(const Tables& tables) {
+std::uint64_t decodedBytes(const Tables& tables, const SectionIndex& index) {
     std::uint64_t bytes = 0;
-    for (const layout::Region& r : tables.regions) {
+    for (std::size_t i = 0; i < tables.regions.size(); ++i) {
+        const layout::Region& r = tables.regions[i];
         bytes +=
             8ull * r.nodeCount + 4ull * r.farCount + (r.paletteCount <= 256 ? 1ull : 2ull) * r.valueCount;
+        if (index.find(RegionPart::Lod, i) != nullptr) bytes += residentLodBytes(r.nodeCount);
     }
     return bytes;
 }
@@ -98,81 +101,22 @@ Result<Tables> readTables(std::span<const std::byte> file, const SectionIndex& i
         PFVOX_CHECK(inRecord(checkRegionRecord(tables.regions[i], tables.palettes.size()), "REGN", i));
     }
     std::uint64_t nextRegion = 0;
-    std::uint64_t topNodes = 0;
     for (std::size_t i = 0; i < tables.models.size(); ++i) {
         const layout::Model& m = tables.models[i];
         PFVOX_CHECK(inRecord(checkModelRecord(m, nextRegion, tables.regions.size(), limits), "MODL", i));
         nextRegion += m.regionCount;
-        topNodes += m.topNodeCount;
     }
     if (nextRegion != tables.regions.size()) {
         return failInSection(
             *index.find("REGN"), ErrorCode::BadStructure,
             fmt::format("{} regions belong to no model", tables.regions.size() - nextRegion));
     }
-    if (const std::uint64_t bytes = decodedBytes(tables); bytes > limits.maxMemoryBytes) {
+    if (const std::uint64_t bytes = decodedBytes(tables, index); bytes > limits.maxMemoryBytes) {
         return failInSection(
             *index.find("REGN"), ErrorCode::LimitExceeded,
             fmt::format("decodes to {} bytes, more than maxMemoryBytes = {}", bytes, limits.maxMemoryBytes));
     }
-    if (topNodes != 0) {
-        const layout::Section* section = index.find("TOPT");
-        if (section == nullptr) return fail(ErrorCode::BadStructure, "section TOPT is missing");
-        PFVOX_TRY(auto, planes, readSection(file, *section, 2 * topNodes));
-        tables.topTrees = std::move(planes);
-    }
     return tables;
-}
-
-/// Where each leaf of the top tree lies, in region order.
-std::vector<glm::ivec3> topLeafOrigins(const OctreeModel& model) {
-    std::vector<glm::ivec3> corner(model.topTree.nodes.size());
-    std::vector<std::uint32_t> level(model.topTree.nodes.size(), model.topTree.depth);
-    corner[0] = model.originVoxels;
-    std::vector<glm::ivec3> origins;
-    for (std::uint32_t i = 0; i < model.topTree.nodes.size(); ++i) {
-        const std::uint32_t d = model.topTree.nodes[i];
-        const std::uint32_t childLevel = level[i] - 1;
-        std::uint32_t child = node::innerMask(d) != 0 ? model.topTree.firstChild(i) : 0;
-        for (std::uint32_t slot = 0; slot < 8; ++slot) {
-            if (((node::validMask(d) >> slot) & 1u) == 0) continue;
-            const glm::ivec3 at =
-                corner[i] + glm::ivec3{mortonDecode(slot)} * (1 << (childLevel + layout::kMaxRegionDepth));
-            if (((node::leafMask(d) >> slot) & 1u) != 0) {
-                // A leaf above the last level would be larger than a region: told apart by an impossible
-                // origin.
-                origins.push_back(childLevel == 0 ? at : glm::ivec3{std::numeric_limits<int>::min()});
-            } else {
-                corner[child] = at;
-                level[child++] = childLevel;
-            }
-        }
-    }
-    return origins;
-}
-
-Result<void> readTopTree(const layout::Model& record, std::span<const std::uint8_t> planes,
-                         std::span<const layout::Region> regions, OctreeModel& model) {
-    const std::size_t n = record.topNodeCount;
-    model.topTree.depth = record.depth - layout::kMaxRegionDepth;
-    PFVOX_CHECK(octree::linkPlanes(octree::cutPlanes(planes, n, record.topBranchCount, false), model.topTree,
-                                   nullptr));
-    if (model.topTree.farTable.size() != record.topFarCount) {
-        return fail(ErrorCode::BadStructure, "wrong number of far pointers");
-    }
-    model.indexRegions();
-    const std::vector<glm::ivec3> origins = topLeafOrigins(model);
-    if (origins.size() != regions.size()) {
-        return fail(ErrorCode::BadStructure,
-                    fmt::format("{} leaves for {} regions", origins.size(), regions.size()));
-    }
-    for (std::size_t i = 0; i < origins.size(); ++i) {
-        const auto& o = regions[i].origin;
-        if (glm::ivec3{o[0], o[1], o[2]} != origins[i] || regions[i].depth != layout::kMaxRegionDepth) {
-            return fail(ErrorCode::BadStructure, fmt::format("region {} does not lie in its leaf", i));
-        }
-    }
-    return {};
 }
 
 glm::ivec3 toVec(const std::array<std::int32_t, 3>& a) {
@@ -189,46 +133,6 @@ OctreeModel modelFromRecord(const layout::Model& record, const NameList& names) 
     if (record.regionCount != 0) model.bounds = {toVec(record.boundsMin), toVec(record.boundsMax)};
     model.regions.resize(record.regionCount);
     return model;
-}
-
-struct RegionSections {
-    const layout::Section* mask;
-    const layout::Section* attributes;
-};
-
-Result<OctreeRegion> readRegion(std::span<const std::byte> file, const layout::Region& record,
-                                const RegionSections& sections, std::span<const std::uint16_t> palettes) {
-    OctreeRegion region;
-    region.originVoxels = toVec(record.origin);
-    region.tree.depth = record.depth;
-    const auto palette = palettes.subspan(record.paletteFirst, record.paletteCount);
-    region.palette.assign(palette.begin(), palette.end());
-
-    const std::size_t n = record.nodeCount;
-    PFVOX_TRY(const auto, planes,
-              readSection(file, *sections.mask, octree::planeBytes(n, record.branchCount, true)));
-    auto linked = octree::linkPlanes(octree::cutPlanes(planes, n, record.branchCount, true), region.tree,
-                                     &region.lookup);
-    if (!linked) return failInSection(*sections.mask, linked.error().code, describe(linked.error()));
-    const std::uint32_t last = region.lookup.back();
-    const std::uint64_t values = (last >> 8) + static_cast<std::uint64_t>(std::popcount(last & 0xffu));
-    if (region.tree.farTable.size() != record.farCount || values != record.valueCount) {
-        return failInSection(*sections.mask, ErrorCode::BadStructure,
-                             "the masks do not have the announced counts");
-    }
-    PFVOX_TRY(auto, bytes, readSection(file, *sections.attributes, region.valueBytes() * values));
-    region.values = std::move(bytes);
-    std::uint32_t largest = 0;
-    for (std::size_t i = 0; i < values; ++i) largest = std::max(largest, region.value(i));
-    if (largest >= region.palette.size()) {
-        return failInSection(*sections.attributes, ErrorCode::BadReference,
-                             fmt::format("value {} in a palette of {}", largest, region.palette.size()));
-    }
-    region.voxelCount = record.voxelCount;
-    region.bounds = {
-        region.originVoxels + glm::ivec3{record.boundsMin[0], record.boundsMin[1], record.boundsMin[2]},
-        region.originVoxels + glm::ivec3{record.boundsMax[0], record.boundsMax[1], record.boundsMax[2]}};
-    return region;
 }
 
 /// What only a walk over all leaves can tell: voxel counts and boxes.
@@ -267,6 +171,7 @@ class Reading {
     void readAll(Diagnostics& diagnostics) {
         const auto head = readHead(file_);
         if (!head) return static_cast<void>(outcome_.faults.push_back(head.error()));
+        outcome_.asset.hollowed = (head->header.optionalFeatures & kPfVoxHollow) != 0;
         const auto index = SectionIndex::make(*head, diagnostics);
         if (!index) return static_cast<void>(outcome_.faults.push_back(index.error()));
         NameList names;
@@ -282,17 +187,15 @@ class Reading {
     }
 
     bool readModels(const Tables& tables, const SectionIndex& index, const NameList& names) {
-        std::size_t topOffset = 0;
+        auto topTrees = TopTreeReader::make(file_, index, tables.models);
+        if (!topTrees) {
+            outcome_.faults.push_back(topTrees.error());
+            return false;
+        }
         for (const layout::Model& record : tables.models) {
             OctreeModel& model = outcome_.asset.models.emplace_back(modelFromRecord(record, names));
-            if (record.topNodeCount == 0) continue;
-            auto result = readTopTree(
-                record, std::span(tables.topTrees).subspan(topOffset, 2 * std::size_t{record.topNodeCount}),
-                std::span(tables.regions).subspan(record.firstRegion, record.regionCount), model);
-            if (!result)
-                result = failInSection(*index.find("TOPT"), result.error().code, describe(result.error()));
-            if (!accept(result)) return false;
-            topOffset += 2 * std::size_t{record.topNodeCount};
+            const auto regions = std::span(tables.regions).subspan(record.firstRegion, record.regionCount);
+            if (record.topNodeCount != 0 && !accept(topTrees->readNext(record, regions, model))) return false;
         }
         return true;
     }
@@ -303,14 +206,9 @@ class Reading {
             for (OctreeRegion& region : model.regions) targets.push_back(&region);
         }
         std::vector<Result<void>> results(targets.size());
+        const RegionReader reader(file_, index, outcome_.asset.materials);
         tbb::parallel_for(std::size_t{0}, targets.size(), [&](std::size_t i) {
-            const RegionSections sections{index.mask(i), index.attributes(i)};
-            if (sections.mask == nullptr || sections.attributes == nullptr) {
-                results[i] =
-                    fail(ErrorCode::BadStructure, fmt::format("MASK or ATTR of region {} is missing", i));
-                return;
-            }
-            auto region = readRegion(file_, tables.regions[i], sections, tables.palettes);
+            auto region = reader.read(i, tables.regions[i], tables.palettes);
             if (region) {
                 *targets[i] = *std::move(region);
             } else {

@@ -13,6 +13,19 @@ std::string ContentKey::hex() const {
     return text;
 }
 
+std::vector<std::string> PfVoxHeader::featureNames() const {
+    std::vector<std::string> names;
+    const auto add = [&](std::uint32_t features, std::uint32_t known, const char* name) {
+        for (std::uint32_t bit = 0; bit < 32; ++bit) {
+            if (((features >> bit) & 1u) == 0) continue;
+            names.push_back((known >> bit & 1u) != 0 ? name : fmt::format("bit {}", bit));
+        }
+    };
+    add(requiredFeatures, kPfVoxResident, "resident");
+    add(optionalFeatures, kPfVoxHollow, "hollow");
+    return names;
+}
+
 Result<OctreeAsset> decodePfVox(std::span<const std::byte> bytes, const Limits& limits,
                                 Diagnostics& diagnostics) {
     ReadOutcome outcome = readAsset(bytes, limits, FaultPolicy::StopAtFirst, diagnostics);

@@ -1,7 +1,5 @@
 // encodePfVox: an OctreeAsset as sections. What can be computed from the masks is not written
 // (node_planes.hpp).
-#include <tbb/parallel_for.h>
-
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
@@ -11,6 +9,7 @@
 
 #include "octree/node_planes.hpp"
 #include "pf_vox/layout.hpp"
+#include "pf_vox/region_writer.hpp"
 #include "pf_vox/section_writer.hpp"
 
 namespace pfvox {
@@ -127,6 +126,19 @@ layout::Region toLayout(const OctreeRegion& region, std::uint32_t paletteFirst) 
             .reserved = {}};
 }
 
+Result<void> checkLod(const OctreeRegion& region, std::size_t materialCount) {
+    if (region.lod.empty()) return {};
+    const std::size_t n = region.tree.nodes.size();
+    if (region.lod.colors.size() != n || region.lod.materials.size() != n) {
+        return fail(ErrorCode::BadReference, "a level of detail has another number of nodes than its tree");
+    }
+    if (std::ranges::max(region.lod.materials) >= region.palette.size() ||
+        std::ranges::max(region.palette) >= materialCount) {
+        return fail(ErrorCode::BadReference, "a level of detail has a material that does not exist");
+    }
+    return {};
+}
+
 Result<void> checkReferences(const OctreeAsset& asset) {
     for (std::size_t i = 0; i < asset.instances.size(); ++i) {
         if (asset.instances[i].model >= asset.models.size()) {
@@ -135,25 +147,26 @@ Result<void> checkReferences(const OctreeAsset& asset) {
                                     asset.instances[i].model, asset.models.size()));
         }
     }
+    for (const OctreeModel& model : asset.models) {
+        for (const OctreeRegion& region : model.regions)
+            PFVOX_CHECK(checkLod(region, asset.materials.size()));
+    }
     return {};
 }
 
-/// MODL, REGN, TOPT and PALT: the tables that say where everything is.
+/// MODL, REGN, TOPT or TOPN, and PALT: the tables that say where everything is.
 struct ModelTables {
     std::vector<layout::Model> models;
     std::vector<layout::Region> regions;
-    SectionContent topTrees{.fourcc = "TOPT"};
+    SectionContent topTrees;
     std::vector<std::uint16_t> palettes;
     std::vector<const OctreeRegion*> sources;  ///< of each region record
 
-    ModelTables(const OctreeAsset& asset, NameTable& names) {
+    ModelTables(const OctreeAsset& asset, Profile profile, NameTable& names)
+        : topTrees(emptyTopTrees(profile)) {
         for (const OctreeModel& model : asset.models) {
             models.push_back(toLayout(model, static_cast<std::uint32_t>(regions.size()), names));
-            if (!model.topTree.nodes.empty()) {
-                const std::vector<std::uint8_t> planes = octree::splitPlanes(model.topTree, {});
-                topTrees.raw.insert(topTrees.raw.end(), planes.begin(), planes.end());
-                topTrees.count += model.topTree.nodes.size();
-            }
+            if (!model.topTree.nodes.empty()) appendTopTree(model.topTree, profile, topTrees);
             for (const OctreeRegion& region : model.regions) {
                 regions.push_back(toLayout(region, static_cast<std::uint32_t>(palettes.size())));
                 palettes.insert(palettes.end(), region.palette.begin(), region.palette.end());
@@ -207,7 +220,7 @@ void addInfoSections(const OctreeAsset& asset, NameTable& names, std::vector<Sec
 Result<std::vector<std::byte>> encodePfVox(const OctreeAsset& asset, const EncodeSettings& settings) {
     PFVOX_CHECK(checkReferences(asset));
     NameTable names;
-    ModelTables tables(asset, names);
+    ModelTables tables(asset, settings.profile, names);
     if (tables.regions.size() >= layout::kNoRegion / 2 || tables.palettes.size() > 0xffffffffu) {
         return fail(ErrorCode::LimitExceeded,
                     fmt::format("{} regions do not fit one file", tables.regions.size()));
@@ -220,22 +233,10 @@ Result<std::vector<std::byte>> encodePfVox(const OctreeAsset& asset, const Encod
     sections.push_back(recordSection("PALT", tables.palettes));
     sections.push_back(names.section());
 
-    const std::size_t firstRegionSection = sections.size();
-    sections.resize(firstRegionSection + 2 * tables.sources.size());
-    tbb::parallel_for(std::size_t{0}, tables.sources.size(), [&](std::size_t i) {
-        const OctreeRegion& region = *tables.sources[i];
-        const auto id = static_cast<std::uint32_t>(i);
-        sections[firstRegionSection + 2 * i] = {.fourcc = "MASK",
-                                                .region = id,
-                                                .count = region.tree.nodes.size(),
-                                                .raw = octree::splitPlanes(region.tree, region.lookup)};
-        sections[firstRegionSection + 2 * i + 1] = {.fourcc = "ATTR",
-                                                    .region = id,
-                                                    .count = region.valueCount(),
-                                                    .texture = Texture::LocalSymbols,
-                                                    .raw = region.values};
-    });
-    return writeSections(std::move(sections), settings);
+    addRegionSections(tables.sources, asset.materials, settings.profile, sections);
+    const FileTraits traits{.requiredFeatures = settings.profile == Profile::Resident ? kPfVoxResident : 0,
+                            .optionalFeatures = asset.hollowed ? kPfVoxHollow : 0};
+    return writeSections(std::move(sections), traits, settings);
 }
 
 }  // namespace pfvox

@@ -16,7 +16,7 @@ inline constexpr std::uint64_t kAlignment = 64;
 inline constexpr std::uint32_t kNoRegion = 0xffffffffu;
 
 /// Features a reader must know to read the file.
-inline constexpr std::uint32_t kKnownRequiredFeatures = 0;
+inline constexpr std::uint32_t kKnownRequiredFeatures = 1u << 0;  // kPfVoxResident
 
 inline constexpr std::uint32_t kSectionMustUnderstand = 1u << 0;
 enum class Codec : std::uint32_t { Raw = 0, Zstd = 1 };

@@ -8,7 +8,7 @@ namespace pfvox {
 
 namespace {
 
-constexpr std::array<std::string_view, 10> kWholeFileSections{"MATL", "MODL", "REGN", "TOPT", "PALT",
+constexpr std::array<std::string_view, 11> kWholeFileSections{"MATL", "MODL", "REGN", "TOPT", "TOPN", "PALT",
                                                               "INST", "NAME", "META", "LAYR", "CAMR"};
 
 std::string_view nameOf(const layout::Section& section) {
@@ -17,22 +17,33 @@ std::string_view nameOf(const layout::Section& section) {
 
 }  // namespace
 
+Result<void> SectionIndex::addToRegion(RegionPart part, const layout::Section& section,
+                                       std::size_t sectionCount) {
+    if (profileOf(part) != profile_)
+        return failInSection(section, ErrorCode::BadStructure, "belongs to the other profile");
+    if (profile_ == Profile::Resident && section.codec != layout::Codec::Raw)
+        return failInSection(section, ErrorCode::BadStructure, "is compressed in a resident file");
+    // A region needs at least one section of its own, so an honest id is below the number of sections.
+    if (section.region >= sectionCount) {
+        return failInSection(section, ErrorCode::BadStructure, "the region does not exist");
+    }
+    auto& list = ofRegions_[static_cast<std::size_t>(part)];
+    if (list.size() <= section.region) list.resize(section.region + 1, nullptr);
+    if (list[section.region] != nullptr)
+        return failInSection(section, ErrorCode::BadStructure, "occurs twice");
+    list[section.region] = &section;
+    return {};
+}
+
 Result<SectionIndex> SectionIndex::make(const FileHead& head, Diagnostics& diagnostics) {
     SectionIndex index;
+    if ((head.header.requiredFeatures & kPfVoxResident) != 0) index.profile_ = Profile::Resident;
     for (const layout::Section& section : head.sections) {
         const std::string_view name = nameOf(section);
-        const bool ofRegion = name == "MASK" || name == "ATTR";
-        if (ofRegion) {
-            // A region needs at least one section of its own, so an honest id is below the number of
-            // sections.
-            if (section.region >= head.sections.size()) {
-                return failInSection(section, ErrorCode::BadStructure, "the region does not exist");
-            }
-            auto& list = name == "MASK" ? index.masks_ : index.attributes_;
-            if (list.size() <= section.region) list.resize(section.region + 1, nullptr);
-            if (list[section.region] != nullptr)
-                return failInSection(section, ErrorCode::BadStructure, "occurs twice");
-            list[section.region] = &section;
+        const auto part =
+            static_cast<std::size_t>(std::ranges::find(kRegionSections, name) - kRegionSections.begin());
+        if (part < kRegionSections.size()) {
+            PFVOX_CHECK(index.addToRegion(static_cast<RegionPart>(part), section, head.sections.size()));
         } else if (std::ranges::find(kWholeFileSections, name) != kWholeFileSections.end()) {
             if (index.find(name) != nullptr)
                 return failInSection(section, ErrorCode::BadStructure, "occurs twice");
@@ -46,6 +57,12 @@ Result<SectionIndex> SectionIndex::make(const FileHead& head, Diagnostics& diagn
         }
     }
     return index;
+}
+
+std::size_t SectionIndex::regionCount() const {
+    std::size_t count = 0;
+    for (const auto& list : ofRegions_) count = std::max(count, list.size());
+    return count;
 }
 
 const layout::Section* SectionIndex::find(std::string_view fourcc) const {

@@ -118,29 +118,37 @@ Result<FileHead> readHead(std::span<const std::byte> file) {
     return head;
 }
 
-Result<std::vector<std::uint8_t>> readSection(std::span<const std::byte> file, const layout::Section& section,
-                                              std::uint64_t expectedBytes) {
-    const auto stored = file.subspan(section.offset, section.storedBytes);
+Result<void> checkSectionSize(std::span<const std::byte> file, const layout::Section& section,
+                              std::uint64_t expectedBytes) {
     if (section.rawBytes != expectedBytes) {
         return failInSection(
             section, ErrorCode::BadStructure,
             fmt::format("holds {} bytes, the tables say {}", section.rawBytes, expectedBytes));
     }
-    std::vector<std::uint8_t> raw;
     if (section.codec == layout::Codec::Raw) {
-        if (section.storedBytes != section.rawBytes) {
-            return failInSection(section, ErrorCode::BadStructure,
-                                 "stored and raw size differ without compression");
-        }
-        const auto* bytes = reinterpret_cast<const std::uint8_t*>(stored.data());
-        raw.assign(bytes, bytes + stored.size());
-    } else if (section.codec == layout::Codec::Zstd) {
-        const unsigned long long frameBytes = ZSTD_getFrameContentSize(stored.data(), stored.size());
-        if (frameBytes != section.rawBytes || section.rawBytes / kMaxCompressionRatio > section.storedBytes) {
-            return failInSection(section, ErrorCode::BadStructure,
-                                 "the zstd frame does not have the announced size");
-        }
-        raw.resize(section.rawBytes);
+        if (section.storedBytes == section.rawBytes) return {};
+        return failInSection(section, ErrorCode::BadStructure,
+                             "stored and raw size differ without compression");
+    }
+    if (section.codec != layout::Codec::Zstd) {
+        return failInSection(section, ErrorCode::UnsupportedFeature,
+                             fmt::format("unknown codec {}", static_cast<std::uint32_t>(section.codec)));
+    }
+    const auto stored = file.subspan(section.offset, section.storedBytes);
+    const unsigned long long frameBytes = ZSTD_getFrameContentSize(stored.data(), stored.size());
+    if (frameBytes != section.rawBytes || section.rawBytes / kMaxCompressionRatio > section.storedBytes) {
+        return failInSection(section, ErrorCode::BadStructure,
+                             "the zstd frame does not have the announced size");
+    }
+    return {};
+}
+
+Result<void> fillFromSection(std::span<const std::byte> file, const layout::Section& section,
+                             std::span<std::byte> raw) {
+    const auto stored = file.subspan(section.offset, section.storedBytes);
+    if (section.codec == layout::Codec::Raw) {
+        std::ranges::copy(stored, raw.begin());
+    } else {
         const std::size_t size =
             ZSTD_decompressDCtx(decompressContext(), raw.data(), raw.size(), stored.data(), stored.size());
         if (ZSTD_isError(size) != 0 || size != raw.size()) {
@@ -149,15 +157,12 @@ Result<std::vector<std::uint8_t>> readSection(std::span<const std::byte> file, c
                 fmt::format("cannot be decompressed: {}",
                             ZSTD_isError(size) != 0 ? ZSTD_getErrorName(size) : "short frame"));
         }
-    } else {
-        return failInSection(section, ErrorCode::UnsupportedFeature,
-                             fmt::format("unknown codec {}", static_cast<std::uint32_t>(section.codec)));
     }
-    if (io::xxh3_64(std::as_bytes(std::span(raw))) != section.rawHash) {
+    if (io::xxh3_64(raw) != section.rawHash) {
         return failInSection(section, ErrorCode::ChecksumMismatch,
                              "the bytes do not have the stored hash: damaged");
     }
-    return raw;
+    return {};
 }
 
 }  // namespace pfvox

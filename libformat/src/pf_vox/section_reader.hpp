@@ -28,9 +28,23 @@ std::string sectionName(const layout::Section& section);
 /// An Error at the section's place in the file.
 tl::unexpected<Error> failInSection(const layout::Section& section, ErrorCode code, std::string message);
 
-/// The raw bytes of a section. `expectedBytes` is what the tables say; nothing is allocated before both
-/// agree. Errors: BadStructure, LimitExceeded, ChecksumMismatch, UnsupportedFeature (codec).
-Result<std::vector<std::uint8_t>> readSection(std::span<const std::byte> file, const layout::Section& section,
-                                              std::uint64_t expectedBytes);
+/// The two halves of readSection: whether sizes and codec are what the tables say, and the raw bytes
+/// themselves.
+Result<void> checkSectionSize(std::span<const std::byte> file, const layout::Section& section,
+                              std::uint64_t expectedBytes);
+Result<void> fillFromSection(std::span<const std::byte> file, const layout::Section& section,
+                             std::span<std::byte> raw);
+
+/// The raw content of a section, as bytes or little-endian words. `expectedCount` is what the tables say;
+/// nothing is allocated before both agree. Errors: BadStructure, ChecksumMismatch, UnsupportedFeature
+/// (codec).
+template <class Word = std::uint8_t>
+Result<std::vector<Word>> readSection(std::span<const std::byte> file, const layout::Section& section,
+                                      std::uint64_t expectedCount) {
+    PFVOX_CHECK(checkSectionSize(file, section, expectedCount * sizeof(Word)));
+    std::vector<Word> raw(expectedCount);
+    PFVOX_CHECK(fillFromSection(file, section, std::as_writable_bytes(std::span(raw))));
+    return raw;
+}
 
 }  // namespace pfvox

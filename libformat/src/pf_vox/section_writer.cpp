@@ -42,6 +42,22 @@ void configure(ZSTD_CCtx* context, int level, Texture texture) {
     }
 }
 
+/// Compresses the bytes if that makes them fewer.
+Result<void> compress(const SectionContent& section, ZSTD_CCtx* context, int level, Stored& stored) {
+    std::vector<std::uint8_t> compressed(ZSTD_compressBound(stored.bytes.size()));
+    configure(context, level, section.texture);
+    const std::size_t size = ZSTD_compress2(context, compressed.data(), compressed.size(),
+                                            stored.bytes.data(), stored.bytes.size());
+    if (ZSTD_isError(size) != 0) {
+        return fail(ErrorCode::Internal, fmt::format("zstd cannot compress section {}: {}", section.fourcc,
+                                                     ZSTD_getErrorName(size)));
+    }
+    if (size >= stored.bytes.size()) return {};
+    stored.entry.codec = layout::Codec::Zstd;
+    stored.bytes.assign(compressed.begin(), compressed.begin() + static_cast<std::ptrdiff_t>(size));
+    return {};
+}
+
 Result<Stored> store(SectionContent section, ZSTD_CCtx* context, int level) {
     Stored stored;
     std::ranges::copy(section.fourcc, stored.entry.fourcc.begin());
@@ -51,22 +67,8 @@ Result<Stored> store(SectionContent section, ZSTD_CCtx* context, int level) {
     stored.entry.count = section.count;
     stored.entry.rawHash = io::xxh3_64(std::as_bytes(std::span(section.raw)));
 
-    std::vector<std::uint8_t> compressed(ZSTD_compressBound(section.raw.size()));
-    configure(context, level, section.texture);
-    const std::size_t size =
-        ZSTD_compress2(context, compressed.data(), compressed.size(), section.raw.data(), section.raw.size());
-    if (ZSTD_isError(size) != 0) {
-        return fail(ErrorCode::Internal, fmt::format("zstd cannot compress section {}: {}", section.fourcc,
-                                                     ZSTD_getErrorName(size)));
-    }
-    if (size < section.raw.size()) {
-        compressed.resize(size);
-        stored.entry.codec = layout::Codec::Zstd;
-        stored.bytes.assign(compressed.begin(), compressed.end());
-    } else {
-        stored.entry.codec = layout::Codec::Raw;
-        stored.bytes = std::move(section.raw);
-    }
+    stored.bytes = std::move(section.raw);
+    if (section.compress) PFVOX_CHECK(compress(section, context, level, stored));
     stored.entry.storedBytes = stored.bytes.size();
     return stored;
 }
@@ -94,7 +96,7 @@ Result<std::vector<Stored>> storeAll(std::vector<SectionContent> sections, int l
 
 }  // namespace
 
-Result<std::vector<std::byte>> writeSections(std::vector<SectionContent> sections,
+Result<std::vector<std::byte>> writeSections(std::vector<SectionContent> sections, const FileTraits& traits,
                                              const EncodeSettings& settings) {
     PFVOX_TRY(const auto, stored, storeAll(std::move(sections), settings.zstdLevel));
     if (stored.size() > 0xffffffffu / sizeof(layout::Section) - 1) {
@@ -105,8 +107,8 @@ Result<std::vector<std::byte>> writeSections(std::vector<SectionContent> section
                           .versionMajor = kPfVoxVersionMajor,
                           .versionMinor = kPfVoxVersionMinor,
                           .endianTag = layout::kEndianTag,
-                          .requiredFeatures = 0,
-                          .optionalFeatures = 0,
+                          .requiredFeatures = traits.requiredFeatures,
+                          .optionalFeatures = traits.optionalFeatures,
                           .tableOffset = sizeof(layout::Header),
                           .sectionCount = static_cast<std::uint32_t>(stored.size()),
                           .fileBytes = 0,

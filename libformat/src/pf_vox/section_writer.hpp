@@ -26,13 +26,20 @@ struct SectionContent {
     std::uint32_t region = layout::kNoRegion;
     bool mustUnderstand = true;
     std::uint64_t count = 0;
+    bool compress = true;
     Texture texture = Texture::General;
     std::vector<std::uint8_t> raw = {};
 };
 
+/// What the header says about the file as a whole.
+struct FileTraits {
+    std::uint32_t requiredFeatures = 0;
+    std::uint32_t optionalFeatures = 0;
+};
+
 /// The bytes of a whole file. A section is stored compressed only where that is smaller.
 /// Errors: LimitExceeded when the section table outgrows its fields; Internal when zstd fails.
-Result<std::vector<std::byte>> writeSections(std::vector<SectionContent> sections,
+Result<std::vector<std::byte>> writeSections(std::vector<SectionContent> sections, const FileTraits& traits,
                                              const EncodeSettings& settings);
 
 }  // namespace pfvox
