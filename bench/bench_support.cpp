@@ -2,6 +2,10 @@
 
 #include <map>
 
+#if defined(__GLIBC__)
+#include <malloc.h>
+#endif
+
 namespace pfvox::bench {
 
 const MeasuredModel& model(const std::string& name) {
@@ -14,6 +18,12 @@ const MeasuredModel& model(const std::string& name) {
 void setRate(benchmark::State& state, const MeasuredModel& source) {
     state.counters["Mvoxels/s"] = benchmark::Counter(static_cast<double>(source.voxels.size()) / 1e6,
                                                      benchmark::Counter::kIsIterationInvariantRate);
+}
+
+void releaseFreeMemory() {
+#if defined(__GLIBC__)
+    malloc_trim(0);
+#endif
 }
 
 void setBytesPerVoxel(benchmark::State& state, const char* name, std::size_t bytes,

@@ -67,9 +67,7 @@ void buildOpenVdb(benchmark::State& state, const std::string& name) {
     const auto threads = static_cast<std::size_t>(state.range(0));
     openvdb::Int32Grid::Ptr grid;
     for (auto _ : state) {
-        state.PauseTiming();
-        grid.reset();
-        state.ResumeTiming();
+        startAfresh(state, grid);
         grid = openVdbOf(source.voxels, threads);
     }
     if (grid->activeVoxelCount() != source.voxels.size()) state.SkipWithError("voxels were lost");
@@ -104,7 +102,10 @@ nanovdb::GridHandle<> nanoVdbOf(std::span<const PackedVoxel> voxels) {
 void buildNanoVdb(benchmark::State& state, const std::string& name) {
     const MeasuredModel& source = model(name);
     nanovdb::GridHandle<> grid;
-    for (auto _ : state) grid = nanoVdbOf(source.voxels);
+    for (auto _ : state) {
+        startAfresh(state, grid);
+        grid = nanoVdbOf(source.voxels);
+    }
     setRate(state, source);
     setBytesPerVoxel(state, "memory_B/voxel", grid.size(), source);
 }
