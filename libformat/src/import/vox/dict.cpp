@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <ranges>
 
 namespace pfvox::import::vox {
 
@@ -53,10 +52,10 @@ std::optional<std::array<float, N>> parseFinite(std::string_view text) {
 }  // namespace
 
 std::optional<std::string_view> Dict::find(std::string_view key) const {
-    for (const auto& [name, value] : std::views::reverse(entries_)) {
-        if (name == key) return value;
-    }
-    return std::nullopt;
+    // From the back: of several entries with one key the last one counts.
+    const auto found = std::find_if(entries_.rbegin(), entries_.rend(),
+                                    [&](const auto& entry) { return entry.first == key; });
+    return found == entries_.rend() ? std::nullopt : std::optional(found->second);
 }
 
 bool Dict::flag(std::string_view key) const {
