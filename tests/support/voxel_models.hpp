@@ -71,6 +71,14 @@ inline std::vector<NamedModel> standardModels() {
     add("half noise", randomModel(2, {0, 0, 0}, {33, 17, 9}, 0.5, 4));
     add("sparse noise", randomModel(3, {0, 0, 0}, {64, 64, 64}, 0.01, 4));
     add("negative coordinates", randomModel(4, {-20, -9, -3}, {14, 7, 11}, 0.4, 4));
+    {
+        // A whole region, 256^3: solid, with one voxel of another material and one missing.
+        VoxelModel whole;
+        whole.fillTile({0, 0, 0}, 8, 1);
+        whole.set({77, 200, 3}, 2);
+        whole.clear({255, 0, 128});
+        add("whole region", std::move(whole));
+    }
     add("across a region border", boxModel({250, 2, 3}, {262, 8, 9}, 1));
     for (std::uint32_t seed = 0; seed < 6; ++seed) {
         add("patches " + std::to_string(seed), patchyModel(100 + seed, 20 + 13 * static_cast<int>(seed)));
