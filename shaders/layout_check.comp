@@ -11,7 +11,7 @@
 
 layout(local_size_x = 1) in;
 
-layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer Headers { TreeBlockHeader at[]; };
+layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer Wide { WideNode at[]; };
 layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer BvhNodes { BvhNode at[]; };
 layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer Instances { InstanceRecord at[]; };
 layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer Models { ModelRecord at[]; };
@@ -32,9 +32,9 @@ void put(uint index, uint word) { Words(found).at[index] = word; }
 void put(uint index, float value) { put(index, floatBitsToUint(value)); }
 
 void main() {
-    TreeBlockHeader header = Headers(numbers).at[1];
-    put(0u, header.lookupOffset);
-    put(1u, header.valueBits);
+    WideNode wideNode = Wide(numbers).at[1];
+    put(0u, wideNode.maskLow);
+    put(1u, wideNode.kind);
     BvhNode bvhNode = BvhNodes(numbers).at[1];
     put(2u, bvhNode.first);
     put(3u, bvhNode.boxMax.z);
@@ -44,9 +44,9 @@ void main() {
     put(6u, instance.model);
     put(7u, instance.id);
     ModelRecord model = Models(numbers).at[1];
-    put(8u, model.depth);
-    put(9u, model.regionScale);
-    put(10u, model.rootBlock.y);
+    put(8u, model.leafScale);
+    put(9u, model.lods.x);
+    put(10u, model.nodes.y);
     put(11u, uint(model.originVoxels.z));
     MaterialRecord material = Materials(numbers).at[1];
     put(12u, material.emissionStrength);

@@ -3,23 +3,24 @@
 //     traceClosest / traceAny -> BVH over instances -> traceOctree (one model) -> Hit
 //     surfaceOf                                                                -> position, normal, voxel, material
 //
-// The octree loop is that of Laine and Karras (2010, "Efficient Sparse Voxel Octrees", section 4), without contours:
-// all directions are mirrored to be negative, a cell's exit is the nearest of its three lower planes, and the level to
-// pop to is the highest mantissa bit that the step has changed. The stack holds node indices only; the span that the
-// paper keeps beside them serves contours. A solid cell that rounding makes the ray miss by a hair counts as met: closed
-// surfaces have no leaks at their edges. The loop touches nodes (and far words) and nothing else; materials are
-// looked up once, for the hit that counts.
+// The octree loop is that of Laine and Karras (2010, "Efficient Sparse Voxel Octrees", section 4: push, advance, pop, a
+// position whose mantissa spells the path, no t-spans since there are no contours), two levels at a time: a node has
+// 4^3 cells (shared/scene.glsl.h). All directions are mirrored to be negative, so a cell's lower planes are its exits,
+// and the next position is one unit in the last place below the plane that is met first. Empty 2^3 groups are left in
+// one step. A solid cell that rounding makes the ray miss by a hair counts as met: closed surfaces have no leaks at
+// their edges. The loop touches nodes and nothing else; materials are looked up once, for the hit that counts.
 //
 // Rays have any non-zero direction; t counts in its lengths. A ray that starts in a solid voxel hits it at t = 0.
+// With Ray::cone above 0 a node that is narrower than the cone stands for all below it, where the scene has levels of
+// detail.
 #ifndef PFVOX_OCTREE_TRACE_GLSL
 #define PFVOX_OCTREE_TRACE_GLSL
 
 #include "shared/scene.glsl.h"
 
-layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer TreeBlock {
-    TreeBlockHeader header;
-    uint words[];
-};
+layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer WideNodes { WideNode at[]; };
+layout(buffer_reference, std430, buffer_reference_align = 4) readonly buffer Words { uint at[]; };
+layout(buffer_reference, std430, buffer_reference_align = 8) readonly buffer Lods { uvec2 at[]; };
 layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer BvhNodes { BvhNode at[]; };
 layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer Instances { InstanceRecord at[]; };
 layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer Models { ModelRecord at[]; };
@@ -27,23 +28,24 @@ layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer Ma
 layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer Scene { SceneHeader header; };
 
 const float kInfinity = 1e30;
-const uint kCubeScale = 23u;  // cells of scale s have an edge of 2^(s - 23); the root's children have scale 22
+const int kCubeScale = 23;   // cells of scale s have an edge of 2^(s - 23) cubes
+const int kRootScale = 21;   // of the root's cells
+const uint kNoMaterial = 0xffffffffu;
 
 struct Ray {
     vec3 origin;
     float tMax;
     vec3 direction;
+    float cone;  // width of what the ray stands for, in parts of the distance; 0 = every voxel counts
 };
 
-// The leaf that a ray met. Kept small: it lives in registers through the whole BVH.
+// The cell that a ray met. Kept small: it lives in registers through the whole BVH.
 struct Hit {
     float t;
     uint instance;  // index of the record, kNoInstance = miss
-    uvec2 block;    // region that holds the leaf
-    uint node;      // in that region
-    uint slot;      // child slot of the leaf
-    uint scale;     // edge of the leaf = 2^(scale - 23) cubes
-    vec3 corner;    // lower corner of the leaf, cube space
+    uint node;      // of a voxel: its brick; else the node that the cell is
+    int scale;      // edge of the cell = 2^(scale - 23) cubes
+    vec3 corner;    // lower corner of the cell, cube space
 };
 
 struct TraceStatistics {
@@ -82,25 +84,36 @@ vec3 cubeFromWorldVector(InstanceRecord instance, vec3 v) {
                 dot(instance.cubeFromWorld2.xyz, v));
 }
 
-// The region block behind a leaf of the top tree.
-uvec2 regionBlockOf(TreeBlock top, uint node, uint leaves, uint slot) {
-    uint region = top.words[top.header.lookupOffset + node] + bitCount(leaves & ((1u << slot) - 1u));
-    uint word = top.header.valuesOffset + 2u * region;
-    return uvec2(top.words[word], top.words[word + 1u]);
+// --- Wide nodes ---
+
+uint maskHalf(WideNode node, uint cell) { return (cell & 32u) != 0u ? node.maskHigh : node.maskLow; }
+
+// Number of cells that are not empty before this one.
+uint cellsBefore(WideNode node, uint cell) {
+    uint before = bitCount(maskHalf(node, cell) & ((1u << (cell & 31u)) - 1u));
+    return before + ((cell & 32u) != 0u ? bitCount(node.maskLow) : 0u);
 }
+
+uint kindOf(WideNode node) { return node.kind & kWideKindMask; }
+
+uint cellAt(uvec3 position, int scale) {
+    uvec3 path = position >> scale & 3u;
+    return path.x | path.y << 2 | path.z << 4;
+}
+
+float edgeOf(int scale) { return uintBitsToFloat(uint(scale + (127 - kCubeScale)) << 23); }
 
 // --- One model ---
 
-uint bitsOf(bvec3 v) { return uint(v.x) | uint(v.y) << 1 | uint(v.z) << 2; }
-uint bitsOf(uvec3 v) { return (v.x & 1u) | (v.y & 1u) << 1 | (v.z & 1u) << 2; }
-
-// A ray in the mirrored cube, where all its components are negative: plane p of an axis is met at t = p * c - b. t
-// counts from the entry into the model's tight box, where the floats are fine.
+// A ray in the mirrored cube, where all its components are negative. t counts from the entry into the model's tight box,
+// where the floats are fine.
 struct CubeRay {
-    vec3 c;
-    vec3 b;
+    vec3 origin;
+    vec3 direction;
+    vec3 inverse;
+    uvec3 start;    // mantissas of the position at the entry: path bits
+    uint flip;      // cell k of the mirrored cube is cell k ^ flip
     bvec3 mirrored;
-    float tMin;
     float tLength;  // to the end of the box or of the ray
     float tEnter;   // what t = 0 is for the caller, times `speed`
     float speed;    // longest component of the caller's direction
@@ -115,109 +128,100 @@ bool enterModel(ModelRecord model, vec3 origin, vec3 direction, float tMax, out 
     vec2 span = boxSpan(model.boxMin, model.boxMax, origin, inverse);
     ray.tEnter = max(span.x, 0.0);
     ray.tLength = min(span.y, tMax * ray.speed) - ray.tEnter;
-    ray.c = -abs(inverse);
-    ray.b = ray.c * (origin + ray.tEnter * d);
     ray.mirrored = greaterThan(d, vec3(0.0));
-    ray.b = mix(ray.b, 3.0 * ray.c - ray.b, ray.mirrored);
-    ray.tMin = max(maxOf(2.0 * ray.c - ray.b), 0.0);
+    ray.flip = (ray.mirrored.x ? 3u : 0u) | (ray.mirrored.y ? 12u : 0u) | (ray.mirrored.z ? 48u : 0u);
+    vec3 entry = origin + ray.tEnter * d;
+    ray.origin = mix(entry, 3.0 - entry, ray.mirrored);
+    ray.direction = -abs(d);
+    ray.inverse = -abs(inverse);
+    // Within the box: its upper planes belong to the cells below them.
+    uvec3 low = floatBitsToUint(mix(model.boxMin, 3.0 - model.boxMax, ray.mirrored));
+    uvec3 high = floatBitsToUint(mix(model.boxMax, 3.0 - model.boxMin, ray.mirrored)) - 1u;
+    ray.start = clamp(floatBitsToUint(ray.origin), low, high);
     return ray.tLength >= 0.0;
 }
 
-// The half of a node that holds the ray at tMin, axis by axis: moves `corner` from the node's to that child's and returns
-// the child's number. tCentre: when the planes through the node's centre are met.
-uint enterChild(vec3 tCentre, float tMin, float halfSize, inout vec3 corner) {
-    bvec3 upper = greaterThan(tCentre, vec3(tMin));
-    corner = mix(corner, corner + halfSize, upper);
-    return bitsOf(upper);
-}
-
-// The axis whose far plane comes first. At an edge one axis goes before the other, so that no step is diagonal and
-// nothing slips through between two solid cells that touch there.
-bvec3 nextAxis(vec3 tExit, float tCell) {
-    bvec3 axis = lessThanEqual(tExit, vec3(tCell));
+// The axis whose plane comes first. At an edge one axis goes before the other, so that no step is diagonal and nothing
+// slips through between two solid cells that touch there.
+bvec3 firstAxis(vec3 tPlanes, float tFirst) {
+    bvec3 axis = equal(tPlanes, vec3(tFirst));
     axis.y = axis.y && !axis.x;
     axis.z = !(axis.x || axis.y);
     return axis;
 }
 
-// Index of an inner child. The far table is hardly ever read.
-uint childNode(TreeBlock block, uint node, uint descriptor, uint slot) {
-    uint inner = descriptor >> 8u & ~descriptor & 0xffu;
-    uint distance = descriptor >> 17u;
-    if ((descriptor & 0x10000u) != 0u) distance = block.words[block.header.farOffset + distance];
-    return node + distance + bitCount(inner & ((1u << slot) - 1u));
-}
-
 // Nearest leaf of one model that begins before hit.t. Writes all of `hit` but `instance`, and only when there is one.
-bool traceOctree(ModelRecord model, vec3 origin, vec3 direction, inout Hit hit, inout TraceStatistics statistics) {
+bool traceOctree(ModelRecord model, vec3 origin, vec3 direction, float cone, inout Hit hit,
+                 inout TraceStatistics statistics) {
     CubeRay ray;
     if (!enterModel(model, origin, direction, hit.t, ray)) return false;
-    uint mirrorBits = bitsOf(ray.mirrored);
-    float tMin = ray.tMin;
+    // Cells below the edge `coneEdge + t * coneGrowth` are not told apart.
+    bool detailed = (model.lods.x | model.lods.y) == 0u;
+    float coneGrowth = detailed ? 0.0 : cone * length(direction) / ray.speed;
 
-    uint stack[kOctreeStackSize];
-    TreeBlock root = TreeBlock(model.rootBlock);
-    TreeBlock block = root;
-    uint node = 0u;
-    uint descriptor = 0u;  // 0 = not loaded: no node has it
-    uint scale = kCubeScale - 1u;
-    float size = 0.5;
-    vec3 corner = vec3(1.0);
-    uint child = enterChild(1.5 * ray.c - ray.b, tMin, size, corner);
+    uint stack[kMaxWideLevels];
+    WideNodes nodes = WideNodes(model.nodes);
+    uvec3 position = ray.start;
+    float t = 0.0;
+    int scale = kRootScale;
+    uint index = 0u;
+    WideNode node = nodes.at[0];
 
     uint lastStep = statistics.steps + kMaxTraceSteps;
     while (statistics.steps != lastStep) {
         ++statistics.steps;
-        if (descriptor == 0u) descriptor = block.words[node];
-        vec3 tExit = corner * ray.c - ray.b;
-        float tCell = minOf(tExit);
-        uint slot = child ^ mirrorBits;
-
-        if ((descriptor >> (8u + slot) & 1u) != 0u) {
-            stack[scale] = node;
-            if ((descriptor >> slot & 1u) == 0u) {
-                node = childNode(block, node, descriptor, slot);
-            } else if (scale > model.regionScale) {
-                block = TreeBlock(regionBlockOf(block, node, descriptor & 0xffu, slot));
-                node = 0u;
-            } else {
-                hit.t = (ray.tEnter + tMin) / ray.speed;
-                hit.block = uvec2(block);
-                hit.node = node;
-                hit.slot = slot;
-                hit.scale = scale;
-                hit.corner = mix(corner, 3.0 - size - corner, ray.mirrored);
-                return true;
+        uint cell;
+        uint cells;
+        int hitScale = -1;
+        for (;;) {
+            cell = cellAt(position, scale) ^ ray.flip;
+            cells = maskHalf(node, cell);
+            if ((cells >> (cell & 31u) & 1u) == 0u) break;
+            if (kindOf(node) != kWideInner) {
+                hitScale = scale;
+                break;
             }
             // Push
-            size *= 0.5;
-            child = enterChild(size * ray.c + tExit, tMin, size, corner);
-            --scale;
-            descriptor = 0u;
-            continue;
+            stack[scale >> 1] = index;
+            index = node.child + cellsBefore(node, cell);
+            node = nodes.at[index];
+            if (kindOf(node) == kWideSolid || edgeOf(scale) < (ray.tEnter + t) * coneGrowth) {
+                hitScale = scale;
+                break;
+            }
+            scale -= 2;
+        }
+        if (hitScale >= 0) {
+            hit.t = (ray.tEnter + t) / ray.speed;
+            hit.node = index;
+            hit.scale = hitScale;
+            vec3 corner = uintBitsToFloat(position & ~0u << hitScale);
+            hit.corner = mix(corner, 3.0 - edgeOf(hitScale) - corner, ray.mirrored);
+            return true;
         }
 
-        // Advance
-        bvec3 axis = nextAxis(tExit, tCell);
-        uint axisBit = bitsOf(axis);
-        vec3 before = corner;
-        corner = mix(corner, corner - size, axis);
-        tMin = max(tMin, tCell);  // never back, however coarse the time of a plane almost along the ray is
-        if (tMin > ray.tLength) return false;
-        child ^= axisBit;
-        if ((child & axisBit) == 0u) continue;
+        // Advance to the exit of the cell, or of its 2^3 group when that is empty.
+        bool groupEmpty = (cells >> (cell & 10u) & 0x00330033u) == 0u;
+        uint above = ~0u << (groupEmpty ? scale + 1 : scale);
+        uvec3 low = position & above;
+        vec3 tPlanes = (uintBitsToFloat(low) - ray.origin) * ray.inverse;
+        float tExit = minOf(tPlanes);
+        bvec3 axis = firstAxis(tPlanes, tExit);
+        t = max(t, tExit);  // never back, however coarse the time of a plane almost along the ray is
+        if (t > ray.tLength) return false;
+        uvec3 inside = clamp(floatBitsToUint(ray.origin + tExit * ray.direction), low, low | ~above);
+        uvec3 next = mix(inside, low - 1u, axis);
 
-        // Pop: from a lower to an upper half is out of the node. The highest bit of the path that changed tells how far.
-        uvec3 changed = floatBitsToUint(before) ^ floatBitsToUint(corner);
-        scale = uint(findMSB(changed.x | changed.y | changed.z));
-        if (scale >= kCubeScale) return false;
-        size = uintBitsToFloat((scale + (127u - kCubeScale)) << 23);
-        node = stack[scale];
-        if (scale > model.regionScale) block = root;
-        uvec3 path = floatBitsToUint(corner) >> scale;
-        corner = uintBitsToFloat(path << scale);
-        child = bitsOf(path);
-        descriptor = 0u;
+        // Pop to the node that holds both cells.
+        uvec3 changed = next ^ position;
+        int level = (findMSB((changed.x | changed.y | changed.z) & ~0u << scale) - 1) | 1;
+        position = next;
+        if (level > scale) {
+            if (level > kRootScale) return false;
+            scale = level;
+            index = stack[scale >> 1];
+            node = nodes.at[index];
+        }
     }
     statistics.capped = 1u;
     return false;
@@ -232,7 +236,7 @@ bool traceInstances(SceneHeader scene, BvhNode leaf, Ray ray, bool anyHit, inout
         ModelRecord model = Models(scene.models).at[instance.model];
         vec3 origin = cubeFromWorldPoint(instance, ray.origin);
         vec3 direction = cubeFromWorldVector(instance, ray.direction);
-        if (traceOctree(model, origin, direction, hit, statistics)) {
+        if (traceOctree(model, origin, direction, ray.cone, hit, statistics)) {
             hit.instance = i;
             if (anyHit) return true;
         }
@@ -243,7 +247,7 @@ bool traceInstances(SceneHeader scene, BvhNode leaf, Ray ray, bool anyHit, inout
 Hit traceScene(Scene sceneBuffer, Ray ray, bool anyHit, inout TraceStatistics statistics) {
     SceneHeader scene = sceneBuffer.header;
     BvhNodes bvh = BvhNodes(scene.bvhNodes);
-    Hit hit = Hit(ray.tMax, kNoInstance, uvec2(0u), 0u, 0u, 0u, vec3(0.0));
+    Hit hit = Hit(ray.tMax, kNoInstance, 0u, 0, vec3(0.0));
     if (scene.instanceCount == 0u) return hit;
 
     // Boxes are tested in lengths of the direction; only the order of magnitude of its components is bounded.
@@ -298,42 +302,28 @@ struct Surface {
     vec3 normal;    // unit length, against the ray
     uint face;
     ivec3 voxel;         // model voxels
-    uint material;       // of the scene
-    uint leafLog2;       // edge of the leaf = 2^leafLog2 voxels
+    uint material;       // of the scene; of a level of detail: its commonest one
+    uint lodColor;       // of a level of detail: R, G, B (sRGB), coverage; else 0
+    int leafLog2;        // edge of the cell = 2^leafLog2 voxels
     float voxelMetres;   // extent of a voxel along the normal
 };
 
-uint valueAt(TreeBlock region, uint index) {
-    uint perWordLog2 = region.header.valueBits == 8u ? 2u : 1u;
-    uint word = region.words[region.header.valuesOffset + (index >> perWordLog2)];
-    uint place = index & ((1u << perWordLog2) - 1u);
-    return bitfieldExtract(word, int(place * region.header.valueBits), int(region.header.valueBits));
+uint valueAt(ModelRecord model, uint index, bool isShort) {
+    uint byteIndex = isShort ? 2u * index : index;
+    uint word = Words(model.values).at[byteIndex >> 2u];
+    return bitfieldExtract(word, int(8u * (byteIndex & 3u)), isShort ? 16 : 8);
 }
 
-uint materialOfSlot(TreeBlock region, uint lookup, uint slot) {
-    uint index = (lookup >> 8u) + bitCount(lookup & ((1u << slot) - 1u) & 0xffu);
-    return region.words[region.header.paletteOffset + valueAt(region, index)];
+// Of the voxel of a brick at this cell.
+uint voxelMaterial(ModelRecord model, WideNode brick, uint cell) {
+    if (kindOf(brick) != kWideBrick) return brick.child;
+    uint value = valueAt(model, brick.child + cellsBefore(brick, cell), (brick.kind & kWideShortValues) != 0u);
+    return Words(model.palettes).at[(brick.kind >> kWidePaletteShift) + value];
 }
 
-// A leaf without a value of its own lies below a slot that has it for its whole subtree. Values below such a slot do
-// not exist, so the first one met on the way down from the region's root is the right one.
-uint hoistedMaterial(TreeBlock region, ModelRecord model, Hit hit) {
-    uvec3 path = floatBitsToUint(hit.corner);
-    uint node = 0u;
-    for (uint scale = min(model.regionScale, kCubeScale - 1u);; --scale) {
-        uint slot = bitsOf(path >> scale);
-        uint lookup = region.words[region.header.lookupOffset + node];
-        if ((lookup >> slot & 1u) != 0u) return materialOfSlot(region, lookup, slot);
-        if (scale <= hit.scale) return 0u;  // not in a valid tree
-        node = childNode(region, node, region.words[node], slot);
-    }
-}
-
-uint materialOf(ModelRecord model, Hit hit) {
-    TreeBlock region = TreeBlock(hit.block);
-    uint lookup = region.words[region.header.lookupOffset + hit.node];
-    if ((lookup >> hit.slot & 1u) != 0u) return materialOfSlot(region, lookup, hit.slot);
-    return hoistedMaterial(region, model, hit);
+// Whether the hit is a node that stands for smaller leaves.
+bool isLevelOfDetail(ModelRecord model, WideNode node, Hit hit) {
+    return hit.scale != int(model.leafScale) && kindOf(node) != kWideSolid;
 }
 
 // The face through which the ray entered the leaf: the one of its three near planes that it met last. A plane that the
@@ -353,8 +343,8 @@ Surface surfaceOf(Scene sceneBuffer, Ray ray, Hit hit) {
     ModelRecord model = Models(scene.models).at[instance.model];
     vec3 origin = cubeFromWorldPoint(instance, ray.origin);
     vec3 direction = cubeFromWorldVector(instance, ray.direction);
-    float size = exp2(float(hit.scale) - float(kCubeScale));
-    float voxelsPerCube = exp2(float(model.depth));
+    float size = edgeOf(hit.scale);
+    float voxelsPerCube = exp2(float(kCubeScale - int(model.leafScale)));
 
     Surface surface;
     bool inside;
@@ -375,9 +365,56 @@ Surface surfaceOf(Scene sceneBuffer, Ray ray, Hit hit) {
     surface.normal = (positive[axis] ? -row : row) / stretch;
     surface.voxelMetres = 1.0 / (stretch * voxelsPerCube);
     surface.position = ray.origin + hit.t * ray.direction;
-    surface.material = materialOf(model, hit);
-    surface.leafLog2 = model.depth + hit.scale - kCubeScale;
+    surface.leafLog2 = hit.scale - int(model.leafScale);
+    surface.lodColor = 0u;
+    WideNode node = WideNodes(model.nodes).at[hit.node];
+    if (isLevelOfDetail(model, node, hit)) {
+        uvec2 lod = Lods(model.lods).at[hit.node];
+        surface.lodColor = lod.x;
+        surface.material = lod.y;
+    } else {
+        surface.material = voxelMaterial(model, node, uint(leafMin.x & 3) | uint(leafMin.y & 3) << 2 |
+                                                      uint(leafMin.z & 3) << 4);
+    }
     return surface;
+}
+
+// Material of a leaf that is cell `cell` of this node, kNoMaterial when that is empty or no leaf.
+uint leafMaterial(ModelRecord model, WideNode node, uint cell) {
+    if ((maskHalf(node, cell) >> (cell & 31u) & 1u) == 0u) return kNoMaterial;
+    if (kindOf(node) != kWideInner) return voxelMaterial(model, node, cell);
+    WideNode child = WideNodes(model.nodes).at[node.child + cellsBefore(node, cell)];
+    return kindOf(child) == kWideSolid ? child.child : kNoMaterial;
+}
+
+// Edge of the leaf in the octree of the file: eight leaves of one material that the wide node tells apart are one
+// there. Walks down from the root: for inspection, not for speed.
+int octreeLeafLog2(Scene sceneBuffer, Hit hit) {
+    SceneHeader scene = sceneBuffer.header;
+    ModelRecord model = Models(scene.models).at[Instances(scene.instances).at[hit.instance].model];
+    uvec3 position = floatBitsToUint(hit.corner);
+    WideNode node = WideNodes(model.nodes).at[0];
+    for (int scale = kRootScale; scale > hit.scale; scale -= 2) {
+        node = WideNodes(model.nodes).at[node.child + cellsBefore(node, cellAt(position, scale))];
+    }
+    uint group = cellAt(position, hit.scale) & 42u;  // its first cell
+    uint first = leafMaterial(model, node, group);
+    bool same = first != kNoMaterial;
+    for (uint sub = 1u; sub < 8u && same; ++sub) {
+        uint cell = group + (sub & 1u) + (sub >> 1 & 1u) * 4u + (sub >> 2) * 16u;
+        same = leafMaterial(model, node, cell) == first;
+    }
+    return hit.scale - int(model.leafScale) + (same ? 1 : 0);
+}
+
+vec3 linearFromSrgb(vec3 c) {
+    return mix(c / 12.92, pow((c + 0.055) / 1.055, vec3(2.4)), greaterThan(c, vec3(0.04045)));
+}
+
+// Base colour of what was hit, linear.
+vec3 albedoOf(Scene scene, Surface surface) {
+    if (surface.lodColor != 0u) return linearFromSrgb(unpackUnorm4x8(surface.lodColor).rgb);
+    return Materials(scene.header.materials).at[surface.material].albedo;
 }
 
 #endif

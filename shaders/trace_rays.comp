@@ -18,7 +18,7 @@ void main() {
     if (index >= parameters.rayCount) return;
     RayRecord record = Rays(parameters.rays).at[index];
     Scene scene = Scene(parameters.scene);
-    Ray ray = Ray(record.origin, record.tMax, record.direction);
+    Ray ray = Ray(record.origin, record.tMax, record.direction, record.cone);
     bool anyHit = parameters.mode == kTraceAnyHit;
 
     TraceStatistics statistics = TraceStatistics(0u, 0u);

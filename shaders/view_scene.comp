@@ -20,7 +20,7 @@ vec2 samplePosition(uint index) { return fract(vec2(0.5) + float(index) * vec2(0
 Ray cameraRay(ViewParameters view, uvec2 pixel, vec2 within) {
     vec2 plane = 2.0 * (vec2(pixel) + within) / vec2(view.width, view.height) - 1.0;
     vec3 direction = view.cameraForward + plane.x * view.cameraRight - plane.y * view.cameraUp;
-    return Ray(view.cameraPosition, kInfinity, normalize(direction));
+    return Ray(view.cameraPosition, kInfinity, normalize(direction), 0.0);
 }
 
 void count(TraceStatistics statistics, uint hits, uint cappedRays, uint samples) {

@@ -45,17 +45,18 @@ vec3 ambientRadiance(ViewParameters view, vec3 normal) {
 float sunVisibility(ViewParameters view, Scene scene, Surface surface, inout TraceStatistics statistics) {
     // Off the surface by a part of a voxel, and by what the float position may be wrong.
     float offset = max(0.002 * surface.voxelMetres, 4e-7 * maxOf(abs(surface.position)));
-    Ray ray = Ray(surface.position + offset * surface.normal, kInfinity, -view.sunDirection);
+    Ray ray = Ray(surface.position + offset * surface.normal, kInfinity, -view.sunDirection, 0.0);
     return traceAny(scene, ray, statistics) ? 0.0 : 1.0;
 }
 
 vec3 litRadiance(ViewParameters view, Scene scene, Surface surface, inout TraceStatistics statistics) {
     MaterialRecord material = Materials(scene.header.materials).at[surface.material];
-    vec3 radiance = material.albedo * (ambientRadiance(view, surface.normal) + material.emissionStrength);
+    vec3 albedo = albedoOf(scene, surface);
+    vec3 radiance = albedo * (ambientRadiance(view, surface.normal) + material.emissionStrength);
     float cosine = dot(surface.normal, -view.sunDirection);
     if (cosine > 0.0 && maxOf(view.sunIrradiance) > 0.0) {
         float visible = sunVisibility(view, scene, surface, statistics);
-        radiance += material.albedo * view.sunIrradiance * (visible * cosine / kPi);
+        radiance += albedo * view.sunIrradiance * (visible * cosine / kPi);
     }
     return radiance;
 }
@@ -90,10 +91,10 @@ vec3 viewColour(ViewParameters view, Scene scene, Ray ray, inout TraceStatistics
     }
     Surface surface = surfaceOf(scene, ray, hit);
     switch (view.mode) {
-        case kViewAlbedo: return Materials(scene.header.materials).at[surface.material].albedo;
+        case kViewAlbedo: return albedoOf(scene, surface);
         case kViewNormals: return linearFromDisplay(0.5 + 0.5 * surface.normal);
         case kViewMaterial: return linearFromDisplay(indexColour(surface.material));
-        case kViewDepth: return heatColour(1.0 - float(surface.leafLog2) / 7.0);
+        case kViewDepth: return heatColour(1.0 - float(octreeLeafLog2(scene, hit)) / 7.0);
         default: return toneMap(view.exposure * litRadiance(view, scene, surface, statistics));
     }
 }

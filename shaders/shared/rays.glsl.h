@@ -14,7 +14,7 @@ PFVOX_STRUCT(RayRecord) {
     vec3 origin;     // metres
     float tMax;      // in lengths of the direction
     vec3 direction;  // any length but zero
-    uint reserved0;
+    float cone;      // width in parts of the distance; 0 = every voxel counts
 };
 PFVOX_SIZE(RayRecord, 32);
 

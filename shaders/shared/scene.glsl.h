@@ -2,16 +2,14 @@
 //
 //     SceneHeader -> BvhNode[]        over the boxes of the instances, in metres
 //                 -> InstanceRecord[] in BVH order
-//                 -> ModelRecord[]    -> root block: a region, or the top tree, whose leaves are regions
+//                 -> ModelRecord[]    -> WideNode[], values, palettes, levels of detail of one model
 //                 -> MaterialRecord[] of all assets, one after the other
 //
-// Tree block (word offsets count from the end of its header, so that word n is node n):
-//     TreeBlockHeader | nodes | lookup | values, 1 or 2 bytes each | palette | far table
-// In the block of a top tree the "lookup" word of a node is the number of regions before its first leaf, and the
-// "values" are the 64-bit addresses of the region blocks.
+// A model's octree is read two levels at a time (docs/decisions/012-wide-tree.md): a wide node has 4^3 cells, cell
+// k = x + 4y + 16z. Node 0 is the root; the inner cells' nodes follow one another in the order of k.
 //
-// Cube space: the octree cube of a model is [1, 2)^3, so that the float mantissa of a coordinate spells the path from
-// the root (Laine and Karras 2010, "Efficient Sparse Voxel Octrees").
+// Cube space: the root is [1, 2)^3, so that the float mantissa of a coordinate spells the path from the root (Laine and
+// Karras 2010, "Efficient Sparse Voxel Octrees").
 #ifndef PFVOX_SHARED_SCENE_GLSL_H
 #define PFVOX_SHARED_SCENE_GLSL_H
 
@@ -20,22 +18,27 @@
 PFVOX_SHARED_BEGIN
 
 PFVOX_CONSTANT(uint, kBvhStackSize, 40u);       // the builder never makes a deeper BVH
-PFVOX_CONSTANT(uint, kOctreeStackSize, 23u);    // levels that a float mantissa can spell
+PFVOX_CONSTANT(uint, kMaxWideLevels, 11u);      // two bits each: what a float mantissa can spell
 PFVOX_CONSTANT(uint, kMaxTraceSteps, 1u << 16);  // for one ray in one instance; such rays are counted
 PFVOX_CONSTANT(uint, kNoInstance, 0xffffffffu);
 PFVOX_CONSTANT(uint, kFaceInside, 6u);          // the ray starts in the voxel; faces 0..5 = -x +x -y +y -z +z
 
-PFVOX_STRUCT(TreeBlockHeader) {
-    uint lookupOffset;   // = number of nodes
-    uint valuesOffset;
-    uint paletteOffset;
-    uint farOffset;
-    uint valueBits;      // 8 or 16; 0 in a top tree
-    uint reserved0;
-    uint reserved1;
-    uint reserved2;
+// WideNode::kind, bits 0 and 1. All but inner ones have leaves for cells.
+PFVOX_CONSTANT(uint, kWideKindMask, 3u);
+PFVOX_CONSTANT(uint, kWideInner, 0u);     // child: node of the first cell
+PFVOX_CONSTANT(uint, kWideBrick, 1u);     // 4^3 voxels; child: value of the first set cell
+PFVOX_CONSTANT(uint, kWideUniform, 2u);   // 4^3 voxels of one material; child: that material of the scene
+PFVOX_CONSTANT(uint, kWideSolid, 3u);     // one leaf; child: its material of the scene
+PFVOX_CONSTANT(uint, kWideShortValues, 4u);  // a brick's values have 2 bytes, not 1
+PFVOX_CONSTANT(uint, kWidePaletteShift, 3u);  // kind >> 3 of a brick: where its palette begins
+
+PFVOX_STRUCT(WideNode) {
+    uint maskLow;   // bit k: cell k is not empty
+    uint maskHigh;  // cells 32 to 63
+    uint child;
+    uint kind;
 };
-PFVOX_SIZE(TreeBlockHeader, 32);
+PFVOX_SIZE(WideNode, 16);
 
 PFVOX_STRUCT(BvhNode) {
     vec3 boxMin;
@@ -59,19 +62,21 @@ PFVOX_SIZE(InstanceRecord, 64);
 PFVOX_OFFSET(InstanceRecord, model, 48);
 
 PFVOX_STRUCT(ModelRecord) {
-    vec3 boxMin;        // tight box of the voxels, cube space
-    uint depth;         // the cube has an edge of 2^depth voxels
+    vec3 boxMin;         // tight box of the voxels, cube space
+    uint leafScale;      // cells of voxel size have an edge of 2^(leafScale - 23) cubes
     vec3 boxMax;
-    uint regionScale;   // a leaf found at a larger scale is a region
-    uvec2 rootBlock;    // address of a tree block
-    uvec2 reserved0;
+    uint reserved0;
+    uvec2 nodes;         // WideNode[]
+    uvec2 values;        // palette indices, 1 or 2 bytes each
+    uvec2 palettes;      // one word an entry: material of the scene
+    uvec2 lods;          // LodRecord[], beside the nodes; 0 = none
     ivec3 originVoxels;  // lower corner of the cube
     uint reserved1;
 };
-PFVOX_SIZE(ModelRecord, 64);
+PFVOX_SIZE(ModelRecord, 80);
 PFVOX_OFFSET(ModelRecord, boxMax, 16);
-PFVOX_OFFSET(ModelRecord, rootBlock, 32);
-PFVOX_OFFSET(ModelRecord, originVoxels, 48);
+PFVOX_OFFSET(ModelRecord, nodes, 32);
+PFVOX_OFFSET(ModelRecord, originVoxels, 64);
 
 PFVOX_STRUCT(MaterialRecord) {
     vec3 albedo;             // linear

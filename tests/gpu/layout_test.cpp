@@ -24,17 +24,17 @@ std::uint32_t wordOf(std::size_t memberOffset) {
 #define PFVOX_WORD(type, member) wordOf<shared::type>(offsetof(shared::type, member))
 
 std::vector<std::uint32_t> expectedWords() {
-    return {PFVOX_WORD(TreeBlockHeader, lookupOffset),
-            PFVOX_WORD(TreeBlockHeader, valueBits),
+    return {PFVOX_WORD(WideNode, maskLow),
+            PFVOX_WORD(WideNode, kind),
             PFVOX_WORD(BvhNode, first),
             PFVOX_WORD(BvhNode, boxMax) + 2,
             PFVOX_WORD(BvhNode, count),
             PFVOX_WORD(InstanceRecord, cubeFromWorld2) + 3,
             PFVOX_WORD(InstanceRecord, model),
             PFVOX_WORD(InstanceRecord, id),
-            PFVOX_WORD(ModelRecord, depth),
-            PFVOX_WORD(ModelRecord, regionScale),
-            PFVOX_WORD(ModelRecord, rootBlock) + 1,
+            PFVOX_WORD(ModelRecord, leafScale),
+            PFVOX_WORD(ModelRecord, lods),
+            PFVOX_WORD(ModelRecord, nodes) + 1,
             PFVOX_WORD(ModelRecord, originVoxels) + 2,
             PFVOX_WORD(MaterialRecord, emissionStrength),
             PFVOX_WORD(MaterialRecord, type),

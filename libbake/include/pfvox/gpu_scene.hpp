@@ -2,8 +2,8 @@
 //
 //     OctreeAsset(s) -> [Scene::build] -> device buffers -> shaders/octree_trace.glsl
 //
-// The layout is that of shaders/shared/scene.glsl.h: a BVH over the instances, the models' top trees, and one
-// contiguous block for each 256^3 region. World units are metres, right-handed, +Y up.
+// The layout is that of shaders/shared/scene.glsl.h: a BVH over the instances, and one contiguous block for each model,
+// its octree read two levels at a time (docs/decisions/012-wide-tree.md). World units are metres, right-handed, +Y up.
 #pragma once
 
 #include <pfvox/error.hpp>
@@ -36,14 +36,14 @@ struct SceneStatistics {
     std::uint32_t materials = 0;
     std::uint32_t bvhNodes = 0;
     std::uint64_t voxels = 0;     ///< of the models, each counted once
-    std::uint64_t nodeBytes = 0;  ///< child descriptors, top trees included
-    std::uint64_t lookupBytes = 0;
-    std::uint64_t valueBytes = 0;
-    std::uint64_t otherBytes = 0;     ///< far tables, palettes, block headers, region addresses
+    std::uint64_t nodeBytes = 0;     ///< wide nodes
+    std::uint64_t lodBytes = 0;      ///< levels of detail
+    std::uint64_t valueBytes = 0;    ///< materials of single voxels
+    std::uint64_t paletteBytes = 0;  ///< regions' palettes
     std::uint64_t instanceBytes = 0;  ///< instances, models, materials, BVH
     double buildMs = 0.0;             ///< CPU time of layout, BVH and upload
     std::uint64_t totalBytes() const {
-        return nodeBytes + lookupBytes + valueBytes + otherBytes + instanceBytes;
+        return nodeBytes + lodBytes + valueBytes + paletteBytes + instanceBytes;
     }
 };
 

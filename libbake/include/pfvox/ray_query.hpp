@@ -16,6 +16,7 @@ struct GpuRay {
     glm::vec3 origin{0.0f};  ///< metres
     glm::vec3 direction{0.0f, 0.0f, -1.0f};
     float tMax = std::numeric_limits<float>::max();
+    float cone = 0.0f;  ///< width in parts of the distance: finer levels of detail are not told apart
 };
 
 struct GpuHit {

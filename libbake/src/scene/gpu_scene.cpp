@@ -1,10 +1,9 @@
 #include <chrono>
-#include <pfvox/assert.hpp>
 #include <pfvox/gpu_scene.hpp>
 
 #include "scene/block_arena.hpp"
 #include "scene/scene_records.hpp"
-#include "scene/tree_block.hpp"
+#include "scene/wide_tree.hpp"
 
 namespace pfvox::gpu {
 
@@ -12,63 +11,58 @@ namespace {
 
 using namespace detail;
 
-/// A model on its way to the device.
-struct ModelLayout {
-    std::vector<BlockLayout> regions;
-    std::vector<BlockPlace> regionPlaces;
-    BlockLayout topTree;
-    BlockPlace topTreePlace;
-    bool hasTopTree = false;
+/// A model on its way to the device, and where its arrays lie in its block.
+struct WideModel {
+    WideTree tree;
+    BlockPlace place;
+    std::uint64_t lodsAt = 0;
+    std::uint64_t valuesAt = 0;
+    std::uint64_t palettesAt = 0;
 };
 
-void count(const BlockLayout& layout, std::size_t nodes, SceneStatistics& statistics) {
-    statistics.nodeBytes += 4 * nodes;
-    statistics.lookupBytes += 4 * nodes;
-    statistics.valueBytes += layout.valueBytes;
-    statistics.otherBytes += layout.sizeBytes - 8 * nodes - layout.valueBytes;
+constexpr std::uint64_t padded(std::uint64_t sizeBytes) {
+    return (sizeBytes + 63) / 64 * 64;
 }
 
-Result<ModelLayout> layOut(const OctreeModel& model, BlockArena& arena, SceneStatistics& statistics) {
-    ModelLayout layout;
-    layout.hasTopTree = !model.topTree.nodes.empty();
-    for (const OctreeRegion& region : model.regions) {
-        layout.regions.push_back(layoutOfRegion(region));
-        PFVOX_TRY(const BlockPlace, place, arena.add(layout.regions.back().sizeBytes));
-        layout.regionPlaces.push_back(place);
-        count(layout.regions.back(), region.tree.nodes.size(), statistics);
-    }
-    if (layout.hasTopTree) {
-        layout.topTree = layoutOfTopTree(model);
-        PFVOX_TRY(const BlockPlace, place, arena.add(layout.topTree.sizeBytes));
-        layout.topTreePlace = place;
-        count(layout.topTree, model.topTree.nodes.size(), statistics);
-    }
-    statistics.voxels += model.voxelCount;
-    statistics.regions += static_cast<std::uint32_t>(model.regions.size());
-    return layout;
+Result<WideModel> layOut(const UsedModel& used, BlockArena& arena, SceneStatistics& statistics) {
+    PFVOX_TRY(WideTree, tree, widen(*used.model, used.firstMaterial));
+    WideModel model{.tree = std::move(tree), .place = {}};
+    model.lodsAt = padded(model.tree.nodeBytes());
+    model.valuesAt = model.lodsAt + padded(model.tree.lodBytes());
+    model.palettesAt = model.valuesAt + padded(model.tree.valueBytes());
+    PFVOX_TRY(const BlockPlace, place, arena.add(model.palettesAt + padded(model.tree.paletteBytes())));
+    model.place = place;
+    statistics.voxels += used.model->voxelCount;
+    statistics.regions += static_cast<std::uint32_t>(used.model->regions.size());
+    statistics.nodeBytes += model.tree.nodeBytes();
+    statistics.lodBytes += model.tree.lodBytes();
+    statistics.valueBytes += model.tree.valueBytes();
+    statistics.paletteBytes += model.tree.paletteBytes();
+    return model;
 }
 
-/// Writes the blocks of one model and returns its record.
-Result<shared::ModelRecord> uploadModel(Device& device, const UsedModel& used, const ModelLayout& layout,
+/// Writes a model's arrays and returns its record.
+Result<shared::ModelRecord> uploadModel(Device& device, const UsedModel& used, const WideModel& model,
                                         const BlockArena& arena) {
-    std::vector<std::uint64_t> addresses;
-    for (std::size_t i = 0; i < layout.regions.size(); ++i) {
-        const BlockPlace place = layout.regionPlaces[i];
-        const std::uint64_t sizeBytes = layout.regions[i].sizeBytes;
-        PFVOX_TRY(const std::span<std::byte>, room,
-                  device.stage(arena.buffer(place), place.offsetBytes, sizeBytes));
-        writeRegion(used.model->regions[i], layout.regions[i], used.firstMaterial, room);
-        addresses.push_back(arena.address(place));
+    const Buffer& buffer = arena.buffer(model.place);
+    const std::uint64_t start = model.place.offsetBytes;
+    const auto put = [&](const auto& items, std::uint64_t at) -> Result<void> {
+        if (items.empty()) return {};
+        return device.upload(buffer, start + at, std::as_bytes(std::span(items)));
+    };
+    for (std::size_t i = 0; i < model.tree.pieces.size(); ++i) {
+        const WidePiece& piece = model.tree.pieces[i];
+        const WidePlace& at = model.tree.places[i];
+        PFVOX_CHECK(put(piece.nodes, sizeof(shared::WideNode) * at.firstNode));
+        PFVOX_CHECK(put(piece.lods, model.lodsAt + sizeof(glm::uvec2) * at.firstNode));
+        PFVOX_CHECK(put(piece.values, model.valuesAt + at.firstValueByte));
+        PFVOX_CHECK(put(piece.palette, model.palettesAt + 4 * at.firstPaletteEntry));
     }
     shared::ModelRecord record = recordOf(*used.model);
-    BlockPlace root = layout.regionPlaces[0];
-    if (layout.hasTopTree) {
-        root = layout.topTreePlace;
-        PFVOX_TRY(const std::span<std::byte>, room,
-                  device.stage(arena.buffer(root), root.offsetBytes, layout.topTree.sizeBytes));
-        writeTopTree(*used.model, layout.topTree, addresses, room);
-    }
-    record.rootBlock = arena.buffer(root).addressWords(root.offsetBytes);
+    record.nodes = buffer.addressWords(start);
+    if (model.tree.hasLods) record.lods = buffer.addressWords(start + model.lodsAt);
+    record.values = buffer.addressWords(start + model.valuesAt);
+    record.palettes = buffer.addressWords(start + model.palettesAt);
     return record;
 }
 
@@ -111,16 +105,16 @@ Result<Scene> Scene::build(Device& device, std::span<const ScenePart> parts, Dia
 
     SceneStatistics statistics;
     BlockArena arena(device.maxBufferBytes());
-    std::vector<ModelLayout> layouts;
+    std::vector<WideModel> wideModels;
     for (const UsedModel& used : records.models) {
-        PFVOX_TRY(ModelLayout, layout, layOut(*used.model, arena, statistics));
-        layouts.push_back(std::move(layout));
+        PFVOX_TRY(WideModel, model, layOut(used, arena, statistics));
+        wideModels.push_back(std::move(model));
     }
     PFVOX_CHECK(arena.createBuffers(device));
     std::vector<shared::ModelRecord> models;
-    for (std::size_t i = 0; i < layouts.size(); ++i) {
+    for (std::size_t i = 0; i < wideModels.size(); ++i) {
         PFVOX_TRY(const shared::ModelRecord, record,
-                  uploadModel(device, records.models[i], layouts[i], arena));
+                  uploadModel(device, records.models[i], wideModels[i], arena));
         models.push_back(record);
     }
     PFVOX_TRY(Buffer, table, uploadTable(device, records, models));

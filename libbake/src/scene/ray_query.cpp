@@ -10,7 +10,7 @@ namespace pfvox::gpu {
 namespace {
 
 shared::RayRecord recordOf(const GpuRay& ray) {
-    return {.origin = ray.origin, .tMax = ray.tMax, .direction = ray.direction, .reserved0 = 0};
+    return {.origin = ray.origin, .tMax = ray.tMax, .direction = ray.direction, .cone = ray.cone};
 }
 
 GpuHit hitOf(const shared::HitRecord& record) {

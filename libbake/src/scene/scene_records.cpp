@@ -5,6 +5,8 @@
 #include <cmath>
 #include <unordered_map>
 
+#include "scene/wide_tree.hpp"
+
 namespace pfvox::gpu::detail {
 
 namespace {
@@ -28,9 +30,9 @@ shared::MaterialRecord recordOf(const Material& material) {
             .reserved0 = 0};
 }
 
-/// Cube space of a model: its octree cube is [1, 2)^3.
+/// Cube space of a model: what its wide root spans is [1, 2)^3.
 Affine voxelsFromCube(const OctreeModel& model) {
-    const double edge = std::ldexp(1.0, static_cast<int>(model.depth));
+    const double edge = std::ldexp(1.0, 2 * static_cast<int>(wideLevels(model.depth)));
     Affine m{edge};
     m[3] = glm::dvec3(model.originVoxels) - edge;
     return m;
@@ -76,10 +78,10 @@ class RecordMaker {
             }
             const OctreeModel& model = asset.models[instance.model];
             if (isHidden(asset, instance) || model.regions.empty()) continue;
-            if (model.depth > shared::kOctreeStackSize) {
+            if (model.depth > 2 * shared::kMaxWideLevels) {
                 return fail(ErrorCode::UnsupportedFeature,
                             fmt::format("model '{}' has {} octree levels; the GPU traversal has {}",
-                                        model.name, model.depth, shared::kOctreeStackSize));
+                                        model.name, model.depth, 2 * shared::kMaxWideLevels));
             }
             addInstance(instance, part.worldFromAsset, {&model, firstMaterial}, id);
         }
@@ -155,19 +157,19 @@ Result<SceneRecords> makeRecords(std::span<const ScenePart> parts, Diagnostics& 
 
 shared::ModelRecord recordOf(const OctreeModel& model) {
     // Corners of the box are whole voxels: exact in float for every depth that the traversal allows.
-    const double voxel = std::ldexp(1.0, -static_cast<int>(model.depth));
+    const std::uint32_t cubeLog2 = 2 * wideLevels(model.depth);
+    const double voxel = std::ldexp(1.0, -static_cast<int>(cubeLog2));
     const auto cubeFromVoxel = [&](glm::ivec3 corner) {
         return glm::vec3(1.0 + glm::dvec3(glm::i64vec3(corner) - glm::i64vec3(model.originVoxels)) * voxel);
     };
-    // A node whose cells have scale s spans 2^(s - 22) of the cube. Only leaves above the regions' roots are
-    // regions.
-    const std::uint32_t rootScale = shared::kOctreeStackSize - 1;
     return {.boxMin = cubeFromVoxel(model.bounds.min),
-            .depth = model.depth,
+            .leafScale = 23 - cubeLog2,
             .boxMax = cubeFromVoxel(model.bounds.max),
-            .regionScale = rootScale - model.topTree.depth,
-            .rootBlock = {0, 0},
-            .reserved0 = {0, 0},
+            .reserved0 = 0,
+            .nodes = {0, 0},
+            .values = {0, 0},
+            .palettes = {0, 0},
+            .lods = {0, 0},
             .originVoxels = model.originVoxels,
             .reserved1 = 0};
 }
