@@ -9,11 +9,11 @@
 
 namespace pfvox::bench {
 
-namespace {
-
 int terrainHeight(int x, int z) {
     return 500 + static_cast<int>(fractalNoise(x, z, 260.0f, 512.0f));
 }
+
+namespace {
 
 /// Runs makeColumn(x, z, out) for every column, in parallel over z, and joins the results in the order of z.
 template <class MakeColumn>
@@ -79,10 +79,9 @@ MeasuredModel makeShell() {
     return model;
 }
 
-MeasuredModel makeTerrain() {
-    constexpr int kEdge = 2048;
-    MeasuredModel model{.name = "terrain", .edge = kEdge, .materialCount = 64, .voxels = {}};
-    model.voxels = gatherColumns(kEdge, [](int x, int z, std::vector<PackedVoxel>& out) {
+MeasuredModel makeTerrain(const std::string& name, int edge) {
+    MeasuredModel model{.name = name, .edge = edge, .materialCount = 64, .voxels = {}};
+    model.voxels = gatherColumns(edge, [](int x, int z, std::vector<PackedVoxel>& out) {
         const int height = terrainHeight(x, z);
         const std::uint32_t patch = hashOf(x >> 6, 0, z >> 6) % 16;
         for (int y = height - 2; y <= height; ++y)
@@ -97,7 +96,8 @@ MeasuredModel makeMeasuredModel(const std::string& name) {
     if (name == "sphere") return makeBall(name, 512, 142.0);
     if (name == "tiny") return makeBall(name, 64, 20.0);
     if (name == "shell") return makeShell();
-    if (name == "terrain") return makeTerrain();
+    if (name == "terrain") return makeTerrain(name, 2048);
+    if (name == "landscape") return makeTerrain(name, 6144);
     throw std::invalid_argument("no measured model is called " + name);
 }
 

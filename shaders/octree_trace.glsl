@@ -1,7 +1,7 @@
 // Ray casting in a scene: the one traversal of pfvox. Nothing else on the GPU walks an octree.
 //
-//     traceClosest / traceAny -> BVH over instances -> traceOctree (one model) -> Hit
-//     surfaceOf                                                                -> position, normal, voxel, material
+//     traceClosest / traceAny -> BVH over instances -> Walk (one model) -> Hit
+//     surfaceOf                                                         -> position, normal, voxel, material
 //
 // The octree loop is that of Laine and Karras (2010, "Efficient Sparse Voxel Octrees", section 4: push, advance, pop, a
 // position whose mantissa spells the path, no t-spans since there are no contours), two levels at a time: a node has
@@ -11,8 +11,10 @@
 // their edges. The loop touches nodes and nothing else; materials are looked up once, for the hit that counts.
 //
 // Rays have any non-zero direction; t counts in its lengths. A ray that starts in a solid voxel hits it at t = 0.
-// With Ray::cone above 0 a node that is narrower than the cone stands for all below it, where the scene has levels of
-// detail.
+//
+// The includer defines PFVOX_TRACE_GROUP_SIZE, the invocations of its workgroup. With PFVOX_TRACE_LOD a node that is
+// narrower than the ray's cone stands for all below it, where the scene has levels of detail; the test costs a tenth of
+// the speed of persistent programs, so it is not there without.
 #ifndef PFVOX_OCTREE_TRACE_GLSL
 #define PFVOX_OCTREE_TRACE_GLSL
 
@@ -105,40 +107,62 @@ float edgeOf(int scale) { return uintBitsToFloat(uint(scale + (127 - kCubeScale)
 
 // --- One model ---
 
-// A ray in the mirrored cube, where all its components are negative. t counts from the entry into the model's tight box,
-// where the floats are fine.
-struct CubeRay {
+// A ray on its way through one model, in the mirrored cube, where all its components are negative. t counts from the
+// entry into the model's tight box, where the floats are fine.
+struct Walk {
     vec3 origin;
     vec3 direction;
     vec3 inverse;
-    uvec3 start;    // mantissas of the position at the entry: path bits
-    uint flip;      // cell k of the mirrored cube is cell k ^ flip
-    bvec3 mirrored;
-    float tLength;  // to the end of the box or of the ray
-    float tEnter;   // what t = 0 is for the caller, times `speed`
-    float speed;    // longest component of the caller's direction
+    uvec3 position;   // mantissas: path bits
+    uint flip;        // cell k of the mirrored cube is cell k ^ flip
+    float t;
+    float tLength;    // to the end of the box or of the ray
+    float tEnter;     // what t = 0 is for the caller, times `speed`
+    float speed;      // longest component of the caller's direction
+    float coneGrowth;  // cells of an edge below (tEnter + t) * coneGrowth are not told apart
+    uvec2 nodes;
+    WideNode node;    // the one that the position is in
+    uint index;
+    int scale;        // of its cells
 };
 
-// False when the ray does not meet the box before tMax.
-bool enterModel(ModelRecord model, vec3 origin, vec3 direction, float tMax, out CubeRay ray) {
+// Nodes above the one that the walk is in, by scale. In shared memory: a fifth faster there than in the private kind.
+shared uint walkStack[kMaxWideLevels * PFVOX_TRACE_GROUP_SIZE];
+uint walkStackIndex(int scale) { return uint(scale >> 1) * PFVOX_TRACE_GROUP_SIZE + gl_LocalInvocationIndex; }
+
+const uint kWalkGoesOn = 0u;
+const uint kWalkHit = 1u;   // at the cell at `position` of scale `scale`, in node `index`
+const uint kWalkLeft = 2u;
+
+bvec3 mirroredAxes(uint flip) { return notEqual(uvec3(flip) & uvec3(1u, 4u, 16u), uvec3(0u)); }
+
+// False when the ray does not meet the model's box before tMax.
+bool beginWalk(ModelRecord model, vec3 origin, vec3 direction, float tMax, float cone, out Walk walk) {
     // The longest component becomes 1: steps then have the precision of the cube whatever the ray's length unit is.
-    ray.speed = maxOf(abs(direction));
-    vec3 d = boundedDirection(direction / ray.speed);
+    walk.speed = maxOf(abs(direction));
+    vec3 d = boundedDirection(direction / walk.speed);
     vec3 inverse = 1.0 / d;
     vec2 span = boxSpan(model.boxMin, model.boxMax, origin, inverse);
-    ray.tEnter = max(span.x, 0.0);
-    ray.tLength = min(span.y, tMax * ray.speed) - ray.tEnter;
-    ray.mirrored = greaterThan(d, vec3(0.0));
-    ray.flip = (ray.mirrored.x ? 3u : 0u) | (ray.mirrored.y ? 12u : 0u) | (ray.mirrored.z ? 48u : 0u);
-    vec3 entry = origin + ray.tEnter * d;
-    ray.origin = mix(entry, 3.0 - entry, ray.mirrored);
-    ray.direction = -abs(d);
-    ray.inverse = -abs(inverse);
+    walk.tEnter = max(span.x, 0.0);
+    walk.tLength = min(span.y, tMax * walk.speed) - walk.tEnter;
+    bvec3 mirrored = greaterThan(d, vec3(0.0));
+    walk.flip = (mirrored.x ? 3u : 0u) | (mirrored.y ? 12u : 0u) | (mirrored.z ? 48u : 0u);
+    vec3 entry = origin + walk.tEnter * d;
+    walk.origin = mix(entry, 3.0 - entry, mirrored);
+    walk.direction = -abs(d);
+    walk.inverse = -abs(inverse);
     // Within the box: its upper planes belong to the cells below them.
-    uvec3 low = floatBitsToUint(mix(model.boxMin, 3.0 - model.boxMax, ray.mirrored));
-    uvec3 high = floatBitsToUint(mix(model.boxMax, 3.0 - model.boxMin, ray.mirrored)) - 1u;
-    ray.start = clamp(floatBitsToUint(ray.origin), low, high);
-    return ray.tLength >= 0.0;
+    uvec3 low = floatBitsToUint(mix(model.boxMin, 3.0 - model.boxMax, mirrored));
+    uvec3 high = floatBitsToUint(mix(model.boxMax, 3.0 - model.boxMin, mirrored)) - 1u;
+    walk.position = clamp(floatBitsToUint(walk.origin), low, high);
+    bool hasLods = (model.lods.x | model.lods.y) != 0u;
+    walk.coneGrowth = hasLods ? cone * length(d) : 0.0;
+    walk.t = 0.0;
+    walk.scale = kRootScale;
+    walk.nodes = model.nodes;
+    walk.index = 0u;
+    walk.node = WideNodes(model.nodes).at[0];
+    return walk.tLength >= 0.0;
 }
 
 // The axis whose plane comes first. At an edge one axis goes before the other, so that no step is diagonal and nothing
@@ -150,141 +174,183 @@ bvec3 firstAxis(vec3 tPlanes, float tFirst) {
     return axis;
 }
 
-// Nearest leaf of one model that begins before hit.t. Writes all of `hit` but `instance`, and only when there is one.
-bool traceOctree(ModelRecord model, vec3 origin, vec3 direction, float cone, inout Hit hit,
-                 inout TraceStatistics statistics) {
-    CubeRay ray;
-    if (!enterModel(model, origin, direction, hit.t, ray)) return false;
-    // Cells below the edge `coneEdge + t * coneGrowth` are not told apart.
-    bool detailed = (model.lods.x | model.lods.y) == 0u;
-    float coneGrowth = detailed ? 0.0 : cone * length(direction) / ray.speed;
-
-    uint stack[kMaxWideLevels];
-    WideNodes nodes = WideNodes(model.nodes);
-    uvec3 position = ray.start;
-    float t = 0.0;
-    int scale = kRootScale;
-    uint index = 0u;
-    WideNode node = nodes.at[0];
-
-    uint lastStep = statistics.steps + kMaxTraceSteps;
-    while (statistics.steps != lastStep) {
-        ++statistics.steps;
-        uint cell;
-        uint cells;
-        int hitScale = -1;
-        for (;;) {
-            cell = cellAt(position, scale) ^ ray.flip;
-            cells = maskHalf(node, cell);
-            if ((cells >> (cell & 31u) & 1u) == 0u) break;
-            if (kindOf(node) != kWideInner) {
-                hitScale = scale;
-                break;
-            }
-            // Push
-            stack[scale >> 1] = index;
-            index = node.child + cellsBefore(node, cell);
-            node = nodes.at[index];
-            if (kindOf(node) == kWideSolid || edgeOf(scale) < (ray.tEnter + t) * coneGrowth) {
-                hitScale = scale;
-                break;
-            }
-            scale -= 2;
-        }
-        if (hitScale >= 0) {
-            hit.t = (ray.tEnter + t) / ray.speed;
-            hit.node = index;
-            hit.scale = hitScale;
-            vec3 corner = uintBitsToFloat(position & ~0u << hitScale);
-            hit.corner = mix(corner, 3.0 - edgeOf(hitScale) - corner, ray.mirrored);
-            return true;
-        }
-
-        // Advance to the exit of the cell, or of its 2^3 group when that is empty.
-        bool groupEmpty = (cells >> (cell & 10u) & 0x00330033u) == 0u;
-        uint above = ~0u << (groupEmpty ? scale + 1 : scale);
-        uvec3 low = position & above;
-        vec3 tPlanes = (uintBitsToFloat(low) - ray.origin) * ray.inverse;
-        float tExit = minOf(tPlanes);
-        bvec3 axis = firstAxis(tPlanes, tExit);
-        t = max(t, tExit);  // never back, however coarse the time of a plane almost along the ray is
-        if (t > ray.tLength) return false;
-        uvec3 inside = clamp(floatBitsToUint(ray.origin + tExit * ray.direction), low, low | ~above);
-        uvec3 next = mix(inside, low - 1u, axis);
-
-        // Pop to the node that holds both cells.
-        uvec3 changed = next ^ position;
-        int level = (findMSB((changed.x | changed.y | changed.z) & ~0u << scale) - 1) | 1;
-        position = next;
-        if (level > scale) {
-            if (level > kRootScale) return false;
-            scale = level;
-            index = stack[scale >> 1];
-            node = nodes.at[index];
-        }
+// Down to the smallest cell at the position, then on to the next one.
+uint stepWalk(inout Walk walk) {
+    uint cell;
+    uint cells;
+    for (;;) {
+        cell = cellAt(walk.position, walk.scale) ^ walk.flip;
+        cells = maskHalf(walk.node, cell);
+        if ((cells >> (cell & 31u) & 1u) == 0u) break;
+        if (kindOf(walk.node) != kWideInner) return kWalkHit;
+        // Push
+        walkStack[walkStackIndex(walk.scale)] = walk.index;
+        walk.index = walk.node.child + cellsBefore(walk.node, cell);
+        walk.node = WideNodes(walk.nodes).at[walk.index];
+        if (kindOf(walk.node) == kWideSolid) return kWalkHit;
+#ifdef PFVOX_TRACE_LOD
+        if (edgeOf(walk.scale) < (walk.tEnter + walk.t) * walk.coneGrowth) return kWalkHit;
+#endif
+        walk.scale -= 2;
     }
-    statistics.capped = 1u;
-    return false;
+
+    // Advance to the exit of the cell, or of its 2^3 group when that is empty.
+    bool groupEmpty = (cells >> (cell & 10u) & 0x00330033u) == 0u;
+    uint above = ~0u << (groupEmpty ? walk.scale + 1 : walk.scale);
+    uvec3 low = walk.position & above;
+    vec3 tPlanes = (uintBitsToFloat(low) - walk.origin) * walk.inverse;
+    float tExit = minOf(tPlanes);
+    bvec3 axis = firstAxis(tPlanes, tExit);
+    walk.t = max(walk.t, tExit);  // never back, however coarse the time of a plane almost along the ray is
+    if (walk.t > walk.tLength) return kWalkLeft;
+    uvec3 inside = clamp(floatBitsToUint(walk.origin + tExit * walk.direction), low, low | ~above);
+    uvec3 next = mix(inside, low - 1u, axis);
+
+    // Pop to the node that holds both cells.
+    uvec3 changed = next ^ walk.position;
+    int level = (findMSB((changed.x | changed.y | changed.z) & ~0u << walk.scale) - 1) | 1;
+    walk.position = next;
+    if (level > walk.scale) {
+        if (level > kRootScale) return kWalkLeft;
+        walk.scale = level;
+        walk.index = walkStack[walkStackIndex(level)];
+        walk.node = WideNodes(walk.nodes).at[walk.index];
+    }
+    return kWalkGoesOn;
+}
+
+// What a walk that has hit found: all of `hit` but `instance`.
+void takeHit(Walk walk, inout Hit hit) {
+    bvec3 mirrored = mirroredAxes(walk.flip);
+    vec3 corner = uintBitsToFloat(walk.position & ~0u << walk.scale);
+    hit.t = (walk.tEnter + walk.t) / walk.speed;
+    hit.node = walk.index;
+    hit.scale = walk.scale;
+    hit.corner = mix(corner, 3.0 - edgeOf(walk.scale) - corner, mirrored);
+}
+
+// The rest of a walk; true when it ends at a hit.
+bool finishWalk(inout Walk walk, inout TraceStatistics statistics) {
+    uint lastStep = statistics.steps + kMaxTraceSteps;
+    uint state;
+    do {
+        ++statistics.steps;
+        state = stepWalk(walk);
+    } while (state == kWalkGoesOn && statistics.steps != lastStep);
+    if (state == kWalkGoesOn) statistics.capped = 1u;
+    return state == kWalkHit;
 }
 
 // --- All instances ---
 
-bool traceInstances(SceneHeader scene, BvhNode leaf, Ray ray, bool anyHit, inout Hit hit,
-                    inout TraceStatistics statistics) {
-    for (uint i = leaf.first; i < leaf.first + leaf.count; ++i) {
-        InstanceRecord instance = Instances(scene.instances).at[i];
-        ModelRecord model = Models(scene.models).at[instance.model];
-        vec3 origin = cubeFromWorldPoint(instance, ray.origin);
-        vec3 direction = cubeFromWorldVector(instance, ray.direction);
-        if (traceOctree(model, origin, direction, ray.cone, hit, statistics)) {
-            hit.instance = i;
-            if (anyHit) return true;
+// A ray on its way through the BVH. Boxes are tested in lengths of its direction.
+struct BvhWalk {
+    vec3 origin;
+    vec3 inverse;
+    uint node;       // to be entered next; kNoBvhNode = the top of the stack
+    uint stackSize;
+};
+const uint kNoBvhNode = 0xffffffffu;
+uint bvhStack[kBvhStackSize];
+
+BvhWalk beginBvhWalk(SceneHeader scene, Ray ray) {
+    // Only the order of magnitude of the components is bounded.
+    float longest = maxOf(abs(ray.direction));
+    vec3 inverse = 1.0 / (boundedDirection(ray.direction / longest) * longest);
+    return BvhWalk(ray.origin, inverse, scene.instanceCount == 0u ? kNoBvhNode : 0u, 0u);
+}
+
+// The next leaf whose box the ray meets before tMax. False when there is none any more.
+bool nextBvhLeaf(BvhNodes bvh, inout BvhWalk walk, float tMax, out BvhNode leaf) {
+    for (;;) {
+        if (walk.node == kNoBvhNode) {
+            if (walk.stackSize == 0u) return false;
+            leaf = bvh.at[bvhStack[--walk.stackSize]];
+            // It was put aside before what has been hit since.
+            if (boxSpan(leaf.boxMin, leaf.boxMax, walk.origin, walk.inverse).x > tMax) continue;
+        } else {
+            leaf = bvh.at[walk.node];
         }
+        walk.node = kNoBvhNode;
+        if (leaf.count != 0u) return true;
+        BvhNode left = bvh.at[leaf.first];
+        BvhNode right = bvh.at[leaf.first + 1u];
+        vec2 spanLeft = boxSpan(left.boxMin, left.boxMax, walk.origin, walk.inverse);
+        vec2 spanRight = boxSpan(right.boxMin, right.boxMax, walk.origin, walk.inverse);
+        bool enterLeft = spanLeft.y >= max(spanLeft.x, 0.0) && spanLeft.x <= tMax;
+        bool enterRight = spanRight.y >= max(spanRight.x, 0.0) && spanRight.x <= tMax;
+        bool leftFirst = enterLeft && (!enterRight || spanLeft.x <= spanRight.x);
+        if (enterLeft && enterRight) bvhStack[walk.stackSize++] = leaf.first + uint(leftFirst);
+        if (enterLeft || enterRight) walk.node = leaf.first + uint(!leftFirst);
     }
-    return false;
+}
+
+Hit missOf(Ray ray) { return Hit(ray.tMax, kNoInstance, 0u, 0, vec3(0.0)); }
+
+bool beginInstance(SceneHeader scene, uint index, Ray ray, float tMax, out Walk walk) {
+    InstanceRecord instance = Instances(scene.instances).at[index];
+    ModelRecord model = Models(scene.models).at[instance.model];
+    return beginWalk(model, cubeFromWorldPoint(instance, ray.origin), cubeFromWorldVector(instance, ray.direction),
+                     tMax, ray.cone, walk);
 }
 
 Hit traceScene(Scene sceneBuffer, Ray ray, bool anyHit, inout TraceStatistics statistics) {
     SceneHeader scene = sceneBuffer.header;
-    BvhNodes bvh = BvhNodes(scene.bvhNodes);
-    Hit hit = Hit(ray.tMax, kNoInstance, 0u, 0, vec3(0.0));
-    if (scene.instanceCount == 0u) return hit;
-
-    // Boxes are tested in lengths of the direction; only the order of magnitude of its components is bounded.
-    vec3 inverse = 1.0 / (boundedDirection(ray.direction / maxOf(abs(ray.direction))) * maxOf(abs(ray.direction)));
-    uint stack[kBvhStackSize];
-    uint stackSize = 0u;
-    BvhNode node = bvh.at[0];
-    for (;;) {
-        if (node.count != 0u) {
-            if (traceInstances(scene, node, ray, anyHit, hit, statistics)) return hit;
-        } else {
-            BvhNode left = bvh.at[node.first];
-            BvhNode right = bvh.at[node.first + 1u];
-            vec2 spanLeft = boxSpan(left.boxMin, left.boxMax, ray.origin, inverse);
-            vec2 spanRight = boxSpan(right.boxMin, right.boxMax, ray.origin, inverse);
-            bool enterLeft = spanLeft.y >= max(spanLeft.x, 0.0) && spanLeft.x <= hit.t;
-            bool enterRight = spanRight.y >= max(spanRight.x, 0.0) && spanRight.x <= hit.t;
-            if (enterLeft && enterRight) {
-                bool leftFirst = spanLeft.x <= spanRight.x;
-                stack[stackSize++] = leftFirst ? node.first + 1u : node.first;
-                node = leftFirst ? left : right;
-                continue;
-            }
-            if (enterLeft || enterRight) {
-                node = enterLeft ? left : right;
-                continue;
-            }
+    BvhWalk bvhWalk = beginBvhWalk(scene, ray);
+    Hit hit = missOf(ray);
+    BvhNode leaf;
+    while (nextBvhLeaf(BvhNodes(scene.bvhNodes), bvhWalk, hit.t, leaf)) {
+        for (uint i = leaf.first; i < leaf.first + leaf.count; ++i) {
+            Walk walk;
+            if (!beginInstance(scene, i, ray, hit.t, walk)) continue;
+            if (!finishWalk(walk, statistics)) continue;
+            takeHit(walk, hit);
+            hit.instance = i;
+            if (anyHit) return hit;
         }
-        // The next box that is still nearer than what was hit since it was put aside.
-        bool found = false;
-        while (!found && stackSize != 0u) {
-            node = bvh.at[stack[--stackSize]];
-            vec2 span = boxSpan(node.boxMin, node.boxMax, ray.origin, inverse);
-            found = span.x <= hit.t;
-        }
-        if (!found) return hit;
     }
+    return hit;
+}
+
+// traceScene in pieces, for programs whose lanes go on to another ray as soon as theirs has ended (Aila and Laine 2009,
+// "Understanding the Efficiency of Ray Traversal on GPUs"): enterNextModel, then stepWalk(walk.model) until it does not
+// go on, then leaveModel, and again.
+struct SceneWalk {
+    Ray ray;
+    Hit hit;
+    BvhWalk bvhWalk;
+    uint next;  // instances of the BVH leaf that are still to be walked
+    uint end;
+    Walk model;
+};
+
+SceneWalk beginSceneWalk(SceneHeader scene, Ray ray) {
+    SceneWalk walk;
+    walk.ray = ray;
+    walk.hit = missOf(ray);
+    walk.bvhWalk = beginBvhWalk(scene, ray);
+    walk.next = 0u;
+    walk.end = 0u;
+    return walk;
+}
+
+// False when walk.hit is what there is.
+bool enterNextModel(SceneHeader scene, inout SceneWalk walk) {
+    for (;;) {
+        while (walk.next != walk.end) {
+            if (beginInstance(scene, walk.next++, walk.ray, walk.hit.t, walk.model)) return true;
+        }
+        BvhNode leaf;
+        if (!nextBvhLeaf(BvhNodes(scene.bvhNodes), walk.bvhWalk, walk.hit.t, leaf)) return false;
+        walk.next = leaf.first;
+        walk.end = leaf.first + leaf.count;
+    }
+}
+
+void leaveModel(inout SceneWalk walk, uint state) {
+    if (state != kWalkHit) return;
+    takeHit(walk.model, walk.hit);
+    walk.hit.instance = walk.next - 1u;
 }
 
 Hit traceClosest(Scene scene, Ray ray, inout TraceStatistics statistics) {
@@ -337,33 +403,49 @@ uint enteredAxis(vec3 origin, vec3 direction, vec3 near, out bool inside) {
     return t.x == last ? 0u : t.y == last ? 1u : 2u;
 }
 
+// A hit within its model.
+struct CubeHit {
+    uint axis;  // of the face
+    uint face;
+    bool positive;    // the ray goes up along that axis
+    ivec3 voxel;      // from the cube's corner
+    ivec3 leafMin;    // of the cell that was hit
+};
+
+CubeHit cubeHitOf(ModelRecord model, vec3 origin, vec3 direction, Hit hit) {
+    float size = edgeOf(hit.scale);
+    float voxelsPerCube = edgeOf(2 * kCubeScale - int(model.leafScale));
+    CubeHit found;
+    bool inside;
+    bvec3 positive = greaterThan(direction, vec3(0.0));
+    found.axis = enteredAxis(origin, direction, mix(hit.corner + size, hit.corner, positive), inside);
+    found.positive = positive[found.axis];
+    found.face = inside ? kFaceInside : 2u * found.axis + (found.positive ? 0u : 1u);
+
+    // The leaf may be larger than a voxel: the voxel is the one at the hit point, held within the leaf.
+    found.leafMin = ivec3((hit.corner - 1.0) * voxelsPerCube);
+    ivec3 leafMax = found.leafMin + int(size * voxelsPerCube) - 1;
+    ivec3 voxel = ivec3(floor((origin + hit.t * direction - 1.0) * voxelsPerCube));
+    if (!inside) voxel[found.axis] = found.positive ? found.leafMin[found.axis] : leafMax[found.axis];
+    found.voxel = clamp(voxel, found.leafMin, leafMax);
+    return found;
+}
+
 Surface surfaceOf(Scene sceneBuffer, Ray ray, Hit hit) {
     SceneHeader scene = sceneBuffer.header;
     InstanceRecord instance = Instances(scene.instances).at[hit.instance];
     ModelRecord model = Models(scene.models).at[instance.model];
-    vec3 origin = cubeFromWorldPoint(instance, ray.origin);
-    vec3 direction = cubeFromWorldVector(instance, ray.direction);
-    float size = edgeOf(hit.scale);
-    float voxelsPerCube = exp2(float(kCubeScale - int(model.leafScale)));
-
+    CubeHit found = cubeHitOf(model, cubeFromWorldPoint(instance, ray.origin),
+                              cubeFromWorldVector(instance, ray.direction), hit);
     Surface surface;
-    bool inside;
-    bvec3 positive = greaterThan(direction, vec3(0.0));
-    uint axis = enteredAxis(origin, direction, mix(hit.corner + size, hit.corner, positive), inside);
-    surface.face = inside ? kFaceInside : 2u * axis + (positive[axis] ? 0u : 1u);
+    surface.face = found.face;
+    surface.voxel = model.originVoxels + found.voxel;
 
-    // The leaf may be larger than a voxel: the voxel is the one at the hit point, held within the leaf.
-    ivec3 leafMin = ivec3((hit.corner - 1.0) * voxelsPerCube);
-    int leafEdge = int(size * voxelsPerCube);
-    ivec3 voxel = ivec3(floor((origin + hit.t * direction - 1.0) * voxelsPerCube));
-    if (!inside) voxel[axis] = positive[axis] ? leafMin[axis] : leafMin[axis] + leafEdge - 1;
-    surface.voxel = model.originVoxels + clamp(voxel, leafMin, leafMin + leafEdge - 1);
-
-    vec3 row = axis == 0u ? instance.cubeFromWorld0.xyz
-             : axis == 1u ? instance.cubeFromWorld1.xyz : instance.cubeFromWorld2.xyz;
-    float stretch = length(row);
-    surface.normal = (positive[axis] ? -row : row) / stretch;
-    surface.voxelMetres = 1.0 / (stretch * voxelsPerCube);
+    vec3 row = found.axis == 0u ? instance.cubeFromWorld0.xyz
+             : found.axis == 1u ? instance.cubeFromWorld1.xyz : instance.cubeFromWorld2.xyz;
+    float perLength = inversesqrt(dot(row, row));
+    surface.normal = (found.positive ? -perLength : perLength) * row;
+    surface.voxelMetres = edgeOf(int(model.leafScale)) * perLength;
     surface.position = ray.origin + hit.t * ray.direction;
     surface.leafLog2 = hit.scale - int(model.leafScale);
     surface.lodColor = 0u;
@@ -373,8 +455,7 @@ Surface surfaceOf(Scene sceneBuffer, Ray ray, Hit hit) {
         surface.lodColor = lod.x;
         surface.material = lod.y;
     } else {
-        surface.material = voxelMaterial(model, node, uint(leafMin.x & 3) | uint(leafMin.y & 3) << 2 |
-                                                      uint(leafMin.z & 3) << 4);
+        surface.material = voxelMaterial(model, node, cellAt(uvec3(found.leafMin), 0));
     }
     return surface;
 }

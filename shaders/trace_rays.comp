@@ -4,8 +4,10 @@
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_buffer_reference_uvec2 : require
 
-#include "octree_trace.glsl"
 #include "shared/rays.glsl.h"
+#define PFVOX_TRACE_GROUP_SIZE kTraceRaysGroupSize
+#define PFVOX_TRACE_LOD
+#include "octree_trace.glsl"
 
 layout(local_size_x = kTraceRaysGroupSize) in;
 

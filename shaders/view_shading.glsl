@@ -2,8 +2,10 @@
 #ifndef PFVOX_VIEW_SHADING_GLSL
 #define PFVOX_VIEW_SHADING_GLSL
 
-#include "octree_trace.glsl"
 #include "shared/view.glsl.h"
+#define PFVOX_TRACE_GROUP_SIZE (kViewGroupEdge * kViewGroupEdge)
+#define PFVOX_TRACE_LOD
+#include "octree_trace.glsl"
 
 const float kPi = 3.14159265;
 

@@ -130,9 +130,9 @@ class Device {
     Result<Buffer> createBuffer(std::uint64_t sizeBytes, std::string_view name);
 
     /// Compiles a SPIR-V module whose only input is a push constant block of `pushConstantBytes` (at most
-    /// 128).
+    /// 128). `constants[i]` is the value of its specialisation constant i; those beyond keep their defaults.
     Result<Program> createProgram(std::span<const std::uint32_t> spirv, std::uint32_t pushConstantBytes,
-                                  std::string_view name);
+                                  std::string_view name, std::span<const std::uint32_t> constants = {});
 
     /// Room of `sizeBytes` (a multiple of 4) to be filled by the caller; its content goes to `target` at
     /// `offsetBytes` (a multiple of 4) with the next run(), download() or flush(). The room is valid until

@@ -106,7 +106,7 @@ Result<void> Device::download(const Buffer& source, std::uint64_t offsetBytes, s
 // --- Programs ---
 
 Result<Program> Device::createProgram(std::span<const std::uint32_t> spirv, std::uint32_t pushConstantBytes,
-                                      std::string_view name) {
+                                      std::string_view name, std::span<const std::uint32_t> constants) {
     const std::string label(name);
     return guarded("program '" + label + "'", [&] {
         auto state = std::make_unique<detail::ProgramState>();
@@ -118,10 +118,18 @@ Result<Program> Device::createProgram(std::span<const std::uint32_t> spirv, std:
         state->layout =
             vk::raii::PipelineLayout(device, vk::PipelineLayoutCreateInfo{}.setPushConstantRanges(range));
         const vk::raii::ShaderModule module(device, vk::ShaderModuleCreateInfo{}.setCode(spirv));
+        std::vector<vk::SpecializationMapEntry> entries;
+        for (std::uint32_t i = 0; i < constants.size(); ++i)
+            entries.push_back({.constantID = i, .offset = 4 * i, .size = 4});
+        const auto specialization =
+            vk::SpecializationInfo{}.setMapEntries(entries).setData<const std::uint32_t>(constants);
         state->pipeline = vk::raii::Pipeline(
             device, nullptr,
             vk::ComputePipelineCreateInfo{
-                .stage = {.stage = vk::ShaderStageFlagBits::eCompute, .module = *module, .pName = "main"},
+                .stage = {.stage = vk::ShaderStageFlagBits::eCompute,
+                          .module = *module,
+                          .pName = "main",
+                          .pSpecializationInfo = &specialization},
                 .layout = *state->layout});
         const auto handle = reinterpret_cast<std::uint64_t>(static_cast<VkPipeline>(*state->pipeline));
         context_->nameObject(vk::ObjectType::ePipeline, handle, label);
