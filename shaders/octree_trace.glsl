@@ -201,9 +201,10 @@ uint stepWalk(inout Walk walk) {
     vec3 tPlanes = (uintBitsToFloat(low) - walk.origin) * walk.inverse;
     float tExit = minOf(tPlanes);
     bvec3 axis = firstAxis(tPlanes, tExit);
-    walk.t = max(walk.t, tExit);  // never back, however coarse the time of a plane almost along the ray is
+    // Never back, neither the time nor with it the position, however coarse the time of a plane almost along the ray is.
+    walk.t = max(walk.t, tExit);
     if (walk.t > walk.tLength) return kWalkLeft;
-    uvec3 inside = clamp(floatBitsToUint(walk.origin + tExit * walk.direction), low, low | ~above);
+    uvec3 inside = clamp(floatBitsToUint(walk.origin + walk.t * walk.direction), low, low | ~above);
     uvec3 next = mix(inside, low - 1u, axis);
 
     // Pop to the node that holds both cells.

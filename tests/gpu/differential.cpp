@@ -1,5 +1,7 @@
 #include "differential.hpp"
 
+#include <tbb/parallel_for.h>
+
 #include <cmath>
 #include <pfvox/gpu_scene.hpp>
 #include <pfvox/ray_query.hpp>
@@ -114,7 +116,14 @@ class RayMaker {
 /// Judges one ray.
 class Judge {
   public:
-    explicit Judge(const OctreeAsset& asset) : asset_(asset), caster_(asset), box_(boxOf(asset)) {}
+    explicit Judge(const OctreeAsset& asset) : asset_(asset), caster_(asset), box_(boxOf(asset)) {
+        for (const Instance& instance : asset.instances) {
+            const double edge = std::ldexp(1.0, static_cast<int>(asset.models[instance.model].depth) + 1);
+            const glm::dmat3 shape(instance.worldFromModel);
+            for (int axis = 0; axis < 3; ++axis)
+                largestCube_ = std::max(largestCube_, edge * glm::length(shape[axis]));
+        }
+    }
 
     ReferenceRay exact(const FloatRay& ray) const {
         return {.origin = ray.origin, .direction = ray.direction};
@@ -164,7 +173,7 @@ class Judge {
     bool passesBeside(const FloatRay& ray, double tMin) const {
         Random random(1);
         const double reach = kTieDistance * reachOf(ray);
-        for (int i = 0; i < 64; ++i) {
+        for (int i = 0; i < 2048; ++i) {
             ReferenceRay beside = exact(ray);
             beside.origin += random.uniform(0.0, reach) * random.direction();
             beside.direction +=
@@ -195,8 +204,9 @@ class Judge {
     }
 
     double reachOf(const FloatRay& ray) const {
-        return glm::length(glm::dvec3(ray.origin) - box_.centre()) + box_.radius() +
-               glm::length(box_.centre());
+        const double farEnd = glm::length(glm::dvec3(ray.origin) - box_.centre()) + box_.radius() +
+                              glm::length(box_.centre());
+        return std::max(farEnd, largestCube_);
     }
 
     /// The hit point may lie off by the tie distance across the face.
@@ -215,6 +225,7 @@ class Judge {
     const OctreeAsset& asset_;
     ReferenceCaster caster_;
     WorldBox box_;
+    double largestCube_ = 0.0;  ///< edge in the world of what the GPU takes for the unit cube
 };
 
 std::string describe(const FloatRay& ray, const gpu::GpuHit& found, const Answer& expected) {
@@ -283,18 +294,26 @@ std::vector<RayFamily> rayFamilies(Random& random, const OctreeAsset& asset, std
 Comparison compare(gpu::Device& device, const OctreeAsset& asset, std::span<const FloatRay> rays) {
     const std::vector<gpu::GpuHit> hits = castOnGpu(device, asset, rays);
     const Judge judge(asset);
+    enum class Verdict : std::uint8_t { Same, Tie, Disagreement };
+    std::vector<Verdict> verdicts(hits.size());
+    std::vector<std::uint8_t> isHit(hits.size());
+    tbb::parallel_for(std::size_t{0}, hits.size(), [&](std::size_t i) {
+        const Answer expected = judge.reference(judge.exact(rays[i]));
+        isHit[i] = expected.has_value();
+        if (judge.same(hits[i], expected, rays[i])) return;
+        verdicts[i] = judge.isTie(hits[i], expected, rays[i]) ? Verdict::Tie : Verdict::Disagreement;
+    });
+
     Comparison counts;
     counts.rays = hits.size();
     for (std::size_t i = 0; i < hits.size(); ++i) {
-        const Answer expected = judge.reference(judge.exact(rays[i]));
-        counts.hits += expected ? 1u : 0u;
+        counts.hits += isHit[i];
         counts.capped += hits[i].capped ? 1u : 0u;
-        if (judge.same(hits[i], expected, rays[i])) continue;
-        if (judge.isTie(hits[i], expected, rays[i])) {
-            ++counts.ties;
-            continue;
+        counts.ties += verdicts[i] == Verdict::Tie ? 1u : 0u;
+        if (verdicts[i] == Verdict::Disagreement && counts.disagreements++ == 0) {
+            counts.firstDisagreement =
+                describe(rays[i], hits[i], judge.reference(judge.exact(rays[i])));
         }
-        if (counts.disagreements++ == 0) counts.firstDisagreement = describe(rays[i], hits[i], expected);
     }
     return counts;
 }

@@ -97,7 +97,7 @@ TEST_F(TraceDifferential, FarPointers) {
     }
     asset.instances.emplace_back();
     ASSERT_FALSE(build(asset).models[0].regions[0].tree.farTable.empty());
-    check(asset, 1500);
+    check(asset);
 }
 
 TEST_F(TraceDifferential, SingleVoxel) {
@@ -105,7 +105,7 @@ TEST_F(TraceDifferential, SingleVoxel) {
     asset.materials = greyMaterials(1);
     asset.models.emplace_back().set({3, -2, 7}, 0);
     asset.instances.emplace_back();
-    check(asset, 1500);
+    check(asset);
 }
 
 TEST_F(TraceDifferential, SeveralRegions) {
@@ -113,7 +113,7 @@ TEST_F(TraceDifferential, SeveralRegions) {
     asset.materials = greyMaterials(16);
     asset.models.push_back(largeModel(16));
     asset.instances.emplace_back();
-    check(asset, 1000);
+    check(asset);
 }
 
 TEST_F(TraceDifferential, RegionsFarApart) {
@@ -131,7 +131,7 @@ TEST_F(TraceDifferential, RegionsFarApart) {
     }
     model.fillTile({512, 0, 1024}, 9, 4);  // solid regions: root nodes that are all leaves
     asset.instances.emplace_back();
-    check(asset, 1000);
+    check(asset);
 }
 
 TEST_F(TraceDifferential, RotatedMirroredShearedAndStretchedInstances) {
