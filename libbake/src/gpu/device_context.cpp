@@ -31,7 +31,7 @@ void fullBarrier(const vk::raii::CommandBuffer& commands) {
 }  // namespace
 
 BufferState::~BufferState() {
-    device->account(0, allocation.sizeBytes);
+    device->release(allocation);
 }
 
 Result<std::shared_ptr<DeviceContext>> DeviceContext::open(const DeviceOptions& options) {
@@ -44,15 +44,13 @@ Result<std::shared_ptr<DeviceContext>> DeviceContext::open(const DeviceOptions& 
 }
 
 DeviceContext::DeviceContext(Instance instance, FoundDevice found)
-    : instance_(std::move(instance)), found_(std::move(found)) {
+    : instance_(std::move(instance)), found_(std::move(found)), staging_(stagingServices()) {
     createDevice();
     queue_ = device_.getQueue(found_.queueFamily, 0);
     commandPool_ =
         vk::raii::CommandPool(device_, {.flags = vk::CommandPoolCreateFlagBits::eResetCommandBuffer,
                                         .queueFamilyIndex = found_.queueFamily});
-    commands_ = std::move(vk::raii::CommandBuffers(device_, {.commandPool = *commandPool_,
-                                                             .level = vk::CommandBufferLevel::ePrimary,
-                                                             .commandBufferCount = 1})[0]);
+    commands_ = createCommands();
     const vk::SemaphoreTypeCreateInfo timeline{.semaphoreType = vk::SemaphoreType::eTimeline,
                                                .initialValue = 0};
     timeline_ = vk::raii::Semaphore(device_, vk::SemaphoreCreateInfo{.pNext = &timeline});
@@ -62,6 +60,13 @@ DeviceContext::DeviceContext(Instance instance, FoundDevice found)
         timeStampNs_ = static_cast<double>(found_.physical.getProperties().limits.timestampPeriod);
     }
     maxBufferBytes_ = largestBuffer(found_.physical);
+}
+
+DeviceContext::~DeviceContext() {
+    try {
+        wait(submissions_);  // copies may be under way
+    } catch (const vk::Error&) {  // of a lost device: nothing is
+    }
 }
 
 void DeviceContext::createDevice() {
@@ -128,11 +133,53 @@ void DeviceContext::nameObject(vk::ObjectType type, std::uint64_t handle, const 
         {.objectType = type, .objectHandle = handle, .pObjectName = name.c_str()});
 }
 
+vk::raii::CommandBuffer DeviceContext::createCommands() const {
+    return std::move(vk::raii::CommandBuffers(device_, {.commandPool = *commandPool_,
+                                                        .level = vk::CommandBufferLevel::ePrimary,
+                                                        .commandBufferCount = 1})[0]);
+}
+
+StagingRing::Services DeviceContext::stagingServices() {
+    return {.allocate = [this](std::uint64_t sizeBytes) { return allocate(sizeBytes, MemoryKind::Staging); },
+            .freed = [this](const Allocation& allocation) { account(0, allocation.sizeBytes); },
+            .createCommands = [this] { return createCommands(); },
+            .submit = [this](const vk::raii::CommandBuffer& commands) { return submitCommands(commands); },
+            .wait = [this](std::uint64_t submission) { wait(submission); }};
+}
+
+std::uint64_t DeviceContext::submitCommands(const vk::raii::CommandBuffer& commands) {
+    const std::uint64_t done = ++submissions_;
+    const vk::TimelineSemaphoreSubmitInfo timeline{.signalSemaphoreValueCount = 1,
+                                                   .pSignalSemaphoreValues = &done};
+    queue_.submit(vk::SubmitInfo{.pNext = &timeline,
+                                 .commandBufferCount = 1,
+                                 .pCommandBuffers = &*commands,
+                                 .signalSemaphoreCount = 1,
+                                 .pSignalSemaphores = &*timeline_});
+    return done;
+}
+
+void DeviceContext::wait(std::uint64_t submission) const {
+    if (submission == 0) return;
+    const vk::SemaphoreWaitInfo wait{
+        .semaphoreCount = 1, .pSemaphores = &*timeline_, .pValues = &submission};
+    if (device_.waitSemaphores(wait, kMaxU64) != vk::Result::eSuccess) {
+        throw vk::DeviceLostError("waiting for the device");
+    }
+}
+
+void DeviceContext::release(const Allocation& allocation) {
+    account(0, allocation.sizeBytes);
+    try {
+        staging_.forget(*allocation.buffer);
+    } catch (const vk::Error&) {  // of a lost device: nothing is under way any more
+    }
+}
+
 double DeviceContext::submit(const std::function<void(const vk::raii::CommandBuffer&)>& record) {
     commands_.reset();
     commands_.begin({.flags = vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
-    for (const PendingCopy& copy : pendingCopies_)
-        commands_.copyBuffer(*staging_.buffer, copy.target, copy.region);
+    staging_.recordCopies(commands_);
     fullBarrier(commands_);
     if (timeStampNs_ > 0.0) {
         commands_.resetQueryPool(*timeStamps_, 0, 2);
@@ -143,20 +190,9 @@ double DeviceContext::submit(const std::function<void(const vk::raii::CommandBuf
         commands_.writeTimestamp(vk::PipelineStageFlagBits::eBottomOfPipe, *timeStamps_, 1);
     commands_.end();
 
-    const std::uint64_t done = ++submissions_;
-    const vk::TimelineSemaphoreSubmitInfo timeline{.signalSemaphoreValueCount = 1,
-                                                   .pSignalSemaphoreValues = &done};
-    queue_.submit(vk::SubmitInfo{.pNext = &timeline,
-                                 .commandBufferCount = 1,
-                                 .pCommandBuffers = &*commands_,
-                                 .signalSemaphoreCount = 1,
-                                 .pSignalSemaphores = &*timeline_});
-    const vk::SemaphoreWaitInfo wait{.semaphoreCount = 1, .pSemaphores = &*timeline_, .pValues = &done};
-    if (device_.waitSemaphores(wait, kMaxU64) != vk::Result::eSuccess) {
-        throw vk::DeviceLostError("waiting for the device");
-    }
-    pendingCopies_.clear();
-    stagedBytes_ = 0;
+    const std::uint64_t done = submitCommands(commands_);
+    wait(done);
+    staging_.submitted(done);
     return elapsedMs();
 }
 
@@ -169,47 +205,30 @@ double DeviceContext::elapsedMs() const {
     return static_cast<double>((ticks[1] - ticks[0]) & mask) * timeStampNs_ * 1e-6;
 }
 
-void DeviceContext::ensureStaging(std::uint64_t sizeBytes) {
-    constexpr std::uint64_t kUsualStagingBytes = 32u << 20;
-    if (staging_.sizeBytes >= sizeBytes) return;
-    account(0, staging_.sizeBytes);
-    staging_ = {};
-    staging_ = allocate(std::max(sizeBytes, kUsualStagingBytes), MemoryKind::Staging);
-}
-
-std::span<std::byte> DeviceContext::stage(vk::Buffer target, std::uint64_t offsetBytes,
-                                          std::uint64_t sizeBytes) {
-    if (stagedBytes_ + sizeBytes > staging_.sizeBytes) {
-        flush();
-        ensureStaging(sizeBytes);
-    }
-    const std::uint64_t at = stagedBytes_;
-    pendingCopies_.push_back({target, {.srcOffset = at, .dstOffset = offsetBytes, .size = sizeBytes}});
-    stagedBytes_ += (sizeBytes + 15) / 16 * 16;
-    return {staging_.mapped + at, sizeBytes};
-}
-
 void DeviceContext::flush() {
-    if (pendingCopies_.empty()) return;
-    submit([](const vk::raii::CommandBuffer&) {});
+    if (staging_.hasPendingCopies()) submit([](const vk::raii::CommandBuffer&) {});
 }
 
 void DeviceContext::download(vk::Buffer source, std::uint64_t offsetBytes, std::span<std::byte> bytes) {
-    flush();
     constexpr std::uint64_t kPieceBytes = 32u << 20;
+    const std::uint64_t largest = std::min<std::uint64_t>(kPieceBytes, bytes.size());
+    if (readback_.sizeBytes < largest) {
+        account(0, readback_.sizeBytes);
+        readback_ = {};
+        readback_ = allocate(largest, MemoryKind::Staging);
+    }
     for (std::uint64_t done = 0; done < bytes.size();) {
         const std::uint64_t piece = std::min<std::uint64_t>(kPieceBytes, bytes.size() - done);
-        ensureStaging(piece);
         submit([&](const vk::raii::CommandBuffer& commands) {
             commands.copyBuffer(
-                source, *staging_.buffer,
+                source, *readback_.buffer,
                 vk::BufferCopy{.srcOffset = offsetBytes + done, .dstOffset = 0, .size = piece});
             const vk::MemoryBarrier toHost{.srcAccessMask = vk::AccessFlagBits::eTransferWrite,
                                            .dstAccessMask = vk::AccessFlagBits::eHostRead};
             commands.pipelineBarrier(vk::PipelineStageFlagBits::eTransfer, vk::PipelineStageFlagBits::eHost,
                                      {}, toHost, nullptr, nullptr);
         });
-        std::copy_n(staging_.mapped, piece, bytes.data() + done);
+        std::copy_n(readback_.mapped, piece, bytes.data() + done);
         done += piece;
     }
 }

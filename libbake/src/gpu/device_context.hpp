@@ -5,20 +5,14 @@
 #include <functional>
 #include <pfvox/gpu.hpp>
 
+#include "gpu/allocation.hpp"
 #include "gpu/instance.hpp"
+#include "gpu/staging_ring.hpp"
 #include "gpu/vulkan.hpp"
 
 namespace pfvox::gpu::detail {
 
 class DeviceContext;
-
-/// Memory and the buffer in it. `mapped` is null for device memory.
-struct Allocation {
-    vk::raii::DeviceMemory memory{nullptr};
-    vk::raii::Buffer buffer{nullptr};
-    std::uint64_t sizeBytes = 0;
-    std::byte* mapped = nullptr;
-};
 
 enum class MemoryKind : std::uint8_t { Device, Staging };
 
@@ -45,6 +39,9 @@ class DeviceContext {
   public:
     static Result<std::shared_ptr<DeviceContext>> open(const DeviceOptions& options);
     DeviceContext(Instance instance, FoundDevice found);
+    ~DeviceContext();
+    DeviceContext(const DeviceContext&) = delete;
+    DeviceContext& operator=(const DeviceContext&) = delete;
 
     const DeviceInfo& info() const { return found_.info; }
     const vk::raii::Device& device() const { return device_; }
@@ -59,18 +56,20 @@ class DeviceContext {
     /// Records commands, submits them and waits. Returns the milliseconds between the first and the last.
     double submit(const std::function<void(const vk::raii::CommandBuffer&)>& record);
 
-    /// Copies that wait in the staging buffer for the next submission.
-    struct PendingCopy {
-        vk::Buffer target;
-        vk::BufferCopy region;
-    };
-    std::span<std::byte> stage(vk::Buffer target, std::uint64_t offsetBytes, std::uint64_t sizeBytes);
+    std::span<std::byte> stage(vk::Buffer target, std::uint64_t offsetBytes, std::uint64_t sizeBytes) {
+        return staging_.stage(target, offsetBytes, sizeBytes);
+    }
     void flush();
     void download(vk::Buffer source, std::uint64_t offsetBytes, std::span<std::byte> bytes);
+    /// Before a buffer goes away.
+    void release(const Allocation& allocation);
 
   private:
     void createDevice();
-    void ensureStaging(std::uint64_t sizeBytes);
+    StagingRing::Services stagingServices();
+    vk::raii::CommandBuffer createCommands() const;
+    std::uint64_t submitCommands(const vk::raii::CommandBuffer& commands);
+    void wait(std::uint64_t submission) const;
     std::uint32_t memoryType(std::uint32_t allowed, MemoryKind kind) const;
     double elapsedMs() const;
 
@@ -88,9 +87,8 @@ class DeviceContext {
     std::uint32_t timeStampBits_ = 0;
     MemoryUse memory_;
 
-    Allocation staging_;
-    std::uint64_t stagedBytes_ = 0;
-    std::vector<PendingCopy> pendingCopies_;
+    StagingRing staging_;
+    Allocation readback_;
 };
 
 }  // namespace pfvox::gpu::detail
