@@ -25,7 +25,8 @@ void main() {
 
     TraceStatistics statistics = TraceStatistics(0u, 0u);
     Hit hit = traceScene(scene, ray, anyHit, statistics);
-    HitRecord result = HitRecord(ivec3(0), hit.t, vec3(0.0), kNoInstance, 0u, 0u, statistics.steps, statistics.capped);
+    HitRecord result = HitRecord(ivec3(0), hit.t, vec3(0.0), kNoInstance, 0u, 0u, statistics.steps,
+                                 statistics.capped, 0u, 0, 0u, 0u);
     if (hit.instance != kNoInstance) {
         result.instance = Instances(scene.header.instances).at[hit.instance].id;
         if (!anyHit) {
@@ -34,6 +35,8 @@ void main() {
             result.normal = surface.normal;
             result.material = surface.material;
             result.face = surface.face;
+            result.lodColor = surface.lodColor;
+            result.cellLog2 = surface.leafLog2;
         }
     }
     Hits(parameters.hits).at[index] = result;

@@ -27,8 +27,12 @@ PFVOX_STRUCT(HitRecord) {
     uint face;      // in the model; kFaceInside when the ray starts in the voxel
     uint steps;     // iterations of the octree loop, all instances
     uint capped;    // 1: an instance was given up after kMaxTraceSteps
+    uint lodColor;  // of a level of detail: R, G, B (sRGB), coverage; else 0
+    int cellLog2;   // edge of the cell that was hit = 2^cellLog2 voxels
+    uint reserved0;
+    uint reserved1;
 };
-PFVOX_SIZE(HitRecord, 48);
+PFVOX_SIZE(HitRecord, 64);
 PFVOX_OFFSET(HitRecord, normal, 16);
 PFVOX_OFFSET(HitRecord, material, 32);
 

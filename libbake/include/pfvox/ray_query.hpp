@@ -30,6 +30,8 @@ struct GpuHit {
     std::uint8_t face = 0;       ///< of the voxel: 0..5 = -x +x -y +y -z +z, 6 = the ray starts inside it
     std::uint32_t steps = 0;     ///< iterations of the octree loop
     bool capped = false;         ///< given up in some instance after too many steps; never in valid data
+    std::uint32_t lodColor = 0;  ///< of a level of detail: R, G, B (sRGB), coverage, R in the low byte; else 0
+    std::int32_t cellLog2 = 0;   ///< edge of the cell that was hit = 2^cellLog2 voxels
 };
 
 enum class RayMode : std::uint8_t {

@@ -22,7 +22,9 @@ GpuHit hitOf(const shared::HitRecord& record) {
             .material = record.material,
             .face = static_cast<std::uint8_t>(record.face),
             .steps = record.steps,
-            .capped = record.capped != 0};
+            .capped = record.capped != 0,
+            .lodColor = record.lodColor,
+            .cellLog2 = record.cellLog2};
 }
 
 }  // namespace
