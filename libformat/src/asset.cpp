@@ -45,6 +45,12 @@ bool isOpaque(const Material& material) {
            material.transparency == 0.0f && material.baseColor.a == 255;
 }
 
+bool isHidden(const AssetInfo& asset, const Instance& instance) {
+    if (instance.hidden) return true;
+    const auto layer = static_cast<std::size_t>(instance.layer);
+    return instance.layer >= 0 && layer < asset.layers.size() && asset.layers[layer].hidden;
+}
+
 namespace {
 
 /// Calls visit(MaterialIndex&) for every brick voxel, tile and region that holds a material.

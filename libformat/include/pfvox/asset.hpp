@@ -71,6 +71,7 @@ struct Camera {
     glm::dvec3 position{0.0};
     glm::dvec3 target{0.0, 0.0, -1.0};
     double fovYDegrees = 45.0;
+    bool operator==(const Camera&) const = default;
 };
 
 /// Where an asset comes from. Holds nothing of the run: no path, time or user.
@@ -89,5 +90,8 @@ struct AssetInfo {
     SourceInfo source;
     bool hollowed = false;  ///< hidden voxels took another material (pfvox/hollow.hpp)
 };
+
+/// Whether the instance is hidden itself or lies on a hidden layer.
+bool isHidden(const AssetInfo& asset, const Instance& instance);
 
 }  // namespace pfvox
