@@ -4,11 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <filesystem>
 #include <vector>
 
 #include "common/batch.hpp"
 #include "common/depfile.hpp"
 #include "common/exit_code.hpp"
+#include "common/inputs.hpp"
 #include "common/table.hpp"
 #include "common/text.hpp"
 
@@ -25,6 +27,14 @@ TEST(Glob, starsStayInAFolderAndDoubleStarsDoNot) {
     EXPECT_FALSE(globMatches("a?c.vox/x", "a/c.vox/x"));
     EXPECT_FALSE(globMatches("c.vo", "c.vox"));
     EXPECT_FALSE(globMatches("", "c.vox"));
+}
+
+// weakly_canonical leaves a relative path of which nothing exists as it is.
+TEST(CanonicalName, isAbsoluteThoughNothingOfThePathExists) {
+    const std::filesystem::path here = std::filesystem::canonical(".");
+    EXPECT_EQ(canonicalName("no such folder/x.vox"), here / "no such folder/x.vox");
+    EXPECT_EQ(canonicalName("./no such folder/../x.vox"), here / "x.vox");
+    EXPECT_EQ(canonicalName("no such folder/"), here / "no such folder");
 }
 
 TEST(NearestWord, findsTyposAndBeginningsButNoStrangers) {

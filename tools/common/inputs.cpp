@@ -112,8 +112,10 @@ Result<std::vector<InputFile>> collectInputs(const std::vector<std::string>& wor
 
 fs::path canonicalName(const fs::path& path) {
     std::error_code error;
-    fs::path name = fs::weakly_canonical(path, error);
-    if (error) name = fs::absolute(path, error).lexically_normal();
+    // Made absolute first: of a path that does not exist at all weakly_canonical leaves a relative one.
+    const fs::path absolute = fs::absolute(path, error);
+    fs::path name = fs::weakly_canonical(absolute, error);
+    if (error) name = absolute.lexically_normal();
     return name.has_filename() ? name : name.parent_path();
 }
 

@@ -36,9 +36,9 @@ std::string complaintAbout(const std::vector<InputFile>& inputs, const fs::path&
 
 }  // namespace
 
-tl::expected<std::vector<InputOutput>, std::string> pairOutputs(std::vector<InputFile> inputs,
-                                                                const fs::path& output,
-                                                                const std::string& extension) {
+tl::expected<std::vector<InputOutput>, std::string> pairOutputs(
+    std::vector<InputFile> inputs, const fs::path& output, const std::string& extension,
+    const std::function<bool(const InputFile&)>& keepsName) {
     if (std::string complaint = complaintAbout(inputs, output, extension); !complaint.empty()) {
         return tl::make_unexpected(std::move(complaint));
     }
@@ -46,8 +46,14 @@ tl::expected<std::vector<InputOutput>, std::string> pairOutputs(std::vector<Inpu
     std::vector<InputOutput> pairs;
     std::map<fs::path, fs::path> inputOfOutput;
     for (InputFile& input : inputs) {
-        const fs::path target =
-            toFile ? output : output / fs::path(input.relative).replace_extension(extension);
+        const bool keeps = keepsName && keepsName(input);
+        if (keeps && toFile) {
+            return tl::make_unexpected(
+                fmt::format("-o {} names a {} file, but {} keeps its name: name a folder", output.string(),
+                            extension, input.file.string()));
+        }
+        fs::path target = output / input.relative;
+        if (!keeps) target = toFile ? output : target.replace_extension(extension);
         const fs::path name = canonicalName(target);
         if (name == canonicalName(input.file)) {
             if (input.fromFolder) continue;

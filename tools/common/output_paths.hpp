@@ -5,6 +5,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <pfvox/error.hpp>
 #include <string>
 #include <vector>
@@ -21,11 +22,12 @@ struct InputOutput {
 /// Whether `output` names a file rather than a folder, by its looks.
 bool namesOutputFile(const std::filesystem::path& output, const std::string& extension);
 
-/// Pairs every input with its output. A file of a searched folder that would be its own output is left out:
-/// it is an output of an earlier run. The error text (wrong usage) names both sides when two inputs have the
-/// same output or when a named input would be overwritten.
-tl::expected<std::vector<InputOutput>, std::string> pairOutputs(std::vector<InputFile> inputs,
-                                                                const std::filesystem::path& output,
-                                                                const std::string& extension);
+/// Pairs every input with its output; inputs for which `keepsName` holds keep their own extension. A file of
+/// a searched folder that would be its own output is left out: it is an output of an earlier run. The error
+/// text (wrong usage) names both sides when two inputs have the same output or when a named input would be
+/// overwritten.
+tl::expected<std::vector<InputOutput>, std::string> pairOutputs(
+    std::vector<InputFile> inputs, const std::filesystem::path& output, const std::string& extension,
+    const std::function<bool(const InputFile&)>& keepsName = {});
 
 }  // namespace pfvox::tools

@@ -43,12 +43,6 @@ Existing inspectOutput(const fs::path& output, const ContentKey& wanted, const L
             .reason = "same source, settings and program as in the last conversion"};
 }
 
-/// Whether the output already holds exactly these bytes.
-bool holdsBytes(const fs::path& output, std::span<const std::byte> bytes, const Limits& limits) {
-    const auto contents = io::readFile(output, limits.maxFileBytes);
-    return contents && std::ranges::equal(contents->bytes(), bytes);
-}
-
 /// Converts, and writes what came out. Sets report, diagnostics and outcome.
 Result<void> convertAndWrite(const AssetTask& task, std::span<const std::byte> source,
                              const ConvertPolicy& policy, const Limits& limits, AssetResult& result) {
@@ -57,11 +51,7 @@ Result<void> convertAndWrite(const AssetTask& task, std::span<const std::byte> s
     result.diagnostics = diagnostics.entries();
     if (!bytes) return tl::make_unexpected(std::move(bytes).error());
 
-    const std::size_t warnings = Reporter::warningCount(result.diagnostics);
-    if (policy.warningsAsErrors && warnings > 0) {
-        return fail(ErrorCode::BadValue,
-                    fmt::format("{}, taken as errors: nothing written", plural(warnings, "warning")));
-    }
+    PFVOX_CHECK(checkWarnings(result, policy));
     if (policy.ifChanged && holdsBytes(task.output, *bytes, limits)) {
         result.outcome = Outcome::UpToDate;
         result.reason = "converted again; the bytes are the same";
@@ -82,10 +72,7 @@ Result<void> decideAndConvert(const AssetTask& task, const ConvertPolicy& policy
 
     if (existing.upToDate && !policy.force) {
         result.outcome = Outcome::UpToDate;
-        if (policy.refreshTimeStamp && !policy.dryRun) {
-            std::error_code ignored;  // only make would notice, and it would run this again
-            fs::last_write_time(task.output, fs::file_time_type::clock::now(), ignored);
-        }
+        refreshTimeStamp(task.output, policy);
         return {};
     }
     if (existing.present && policy.noClobber) {
@@ -119,7 +106,25 @@ std::string_view toString(Outcome outcome) {
     return "unknown";
 }
 
-AssetResult convertAsset(const AssetTask& task, const ConvertPolicy& policy, const Limits& limits) {
+bool holdsBytes(const fs::path& output, std::span<const std::byte> bytes, const Limits& limits) {
+    const auto contents = io::readFile(output, limits.maxFileBytes);
+    return contents && std::ranges::equal(contents->bytes(), bytes);
+}
+
+void refreshTimeStamp(const fs::path& output, const ConvertPolicy& policy) {
+    if (!policy.refreshTimeStamp || policy.dryRun) return;
+    std::error_code ignored;  // only make would notice, and it would run this again
+    fs::last_write_time(output, fs::file_time_type::clock::now(), ignored);
+}
+
+Result<void> checkWarnings(const AssetResult& result, const ConvertPolicy& policy) {
+    const std::size_t warnings = Reporter::warningCount(result.diagnostics);
+    if (!policy.warningsAsErrors || warnings == 0) return {};
+    return fail(ErrorCode::BadValue,
+                fmt::format("{}, taken as errors: nothing written", plural(warnings, "warning")));
+}
+
+AssetResult guardedResult(const AssetTask& task, const std::function<Result<void>(AssetResult&)>& work) {
     AssetResult result;
     const auto failWith = [&](Error error) {
         if (error.file.empty()) error.file = task.source;
@@ -127,7 +132,7 @@ AssetResult convertAsset(const AssetTask& task, const ConvertPolicy& policy, con
         result.error = std::move(error);
     };
     try {
-        auto status = decideAndConvert(task, policy, limits, result);
+        auto status = work(result);
         if (!status) failWith(std::move(status).error());
     } catch (const std::bad_alloc&) {
         failWith(
@@ -136,6 +141,11 @@ AssetResult convertAsset(const AssetTask& task, const ConvertPolicy& policy, con
         failWith({.code = ErrorCode::Internal, .message = exception.what()});
     }
     return result;
+}
+
+AssetResult convertAsset(const AssetTask& task, const ConvertPolicy& policy, const Limits& limits) {
+    return guardedResult(task,
+                         [&](AssetResult& result) { return decideAndConvert(task, policy, limits, result); });
 }
 
 }  // namespace pfvox::tools

@@ -5,8 +5,10 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <pfvox/convert.hpp>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -45,7 +47,20 @@ struct AssetTask {
     std::filesystem::path source;
     std::filesystem::path output;
     ConvertSettings settings;
+    bool isScene = false;  ///< a scene.toml: carryScene() instead of convertAsset()
 };
+
+/// Runs `work` on a fresh result. Whatever it fails with or throws becomes the result's error.
+AssetResult guardedResult(const AssetTask& task, const std::function<Result<void>(AssetResult&)>& work);
+
+/// Gives an output that stays as it is the present time, where the policy asks for it.
+void refreshTimeStamp(const std::filesystem::path& output, const ConvertPolicy& policy);
+
+/// Fails when the policy takes the warnings of `result` as errors.
+Result<void> checkWarnings(const AssetResult& result, const ConvertPolicy& policy);
+
+/// Whether the output already holds exactly these bytes.
+bool holdsBytes(const std::filesystem::path& output, std::span<const std::byte> bytes, const Limits& limits);
 
 /// Never throws; whatever goes wrong is in the result. May be called from several threads for different
 /// outputs.

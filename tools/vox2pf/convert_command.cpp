@@ -2,39 +2,21 @@
 #include <memory>
 #include <pfvox/import.hpp>
 
-#include "common/batch.hpp"
-#include "common/depfile.hpp"
 #include "common/inputs.hpp"
 #include "common/output_paths.hpp"
-#include "common/progress.hpp"
 #include "vox2pf/commands.hpp"
-#include "vox2pf/convert_report.hpp"
-#include "vox2pf/settings.hpp"
+#include "vox2pf/convert_run.hpp"
 
 namespace pfvox::tools {
 
 namespace {
 
-struct ConvertOptions {
-    CommonOptions common;
-    std::vector<std::string> inputs;
-    std::string output;
-    std::string settingsFile;
-    std::string depfile;
-    SettingsPatch patch;
-    bool archive = false;
-    bool force = false;
-    bool noClobber = false;
-    bool dryRun = false;
-    bool explain = false;
-    bool failFast = false;
-    bool ifChanged = false;
-    bool warningsAsErrors = false;
-};
-
 HelpText helpText() {
     return {
-        .summary = "Converts voxel sources to PF_VOX files. What is up to date by its content is left alone.",
+        .summary =
+            "Converts voxel sources to PF_VOX files and carries scenes over. What is up to date by its "
+            "content is left "
+            "alone.",
         .usage = {"vox2pf [convert] [options] <file | folder | @list | ->... -o <file | folder>",
                   "  @list is a text file with one input a line, - is such a list on stdin"},
         .examples = {{"vox2pf hall.vox -o hall.pf_vox", "one file"},
@@ -114,7 +96,8 @@ void addConversionOptions(CLI::App& command, ConvertOptions& options) {
         ->check(numberFrom(0.0, 1.0))
         ->group(group::kConversion);
     command
-        .add_option("--vdb-grid", patch.vdbGrids, "OpenVDB: import this grid; may be given again (default: all)")
+        .add_option("--vdb-grid", patch.vdbGrids,
+                    "OpenVDB: import this grid; may be given again (default: all)")
         ->option_text("NAME")
         ->group(group::kConversion);
     command
@@ -147,101 +130,19 @@ void addBuildOptions(CLI::App& command, ConvertOptions& options) {
         ->group(group::kBuild);
 }
 
-/// One run of the command, from checked options to the exit code.
-class ConvertRun {
-  public:
-    ConvertRun(const ConvertOptions& options, const Limits& limits, Reporter& reporter)
-        : options_(options), limits_(limits), reporter_(reporter) {}
-
-    ExitCode run(std::vector<AssetTask> tasks) {
-        tasks_ = std::move(tasks);
-        results_.resize(tasks_.size());
-        Progress progress(reporter_, tasks_.size());
-        runBatch(tasks_.size(), {.threads = options_.common.threads, .failFast = options_.failFast},
-                 {.work = [&](std::size_t i) { return work(i); },
-                  .finished = [&](std::size_t i) { report(i); },
-                  .progressed = [&](std::size_t i) { progress.advance(results_[i].report.voxels); }});
-        reporter_.clearProgress();
-        reportUnstarted();
-        const bool depfileGood = writeDependencies();
-        reporter_.result(summary(tasks_, results_, progress.elapsedSeconds()));
-        return depfileGood ? exitCode() : ExitCode::CannotReadOrWrite;
-    }
-
-  private:
-    bool work(std::size_t i) {
-        const ConvertPolicy policy{.force = options_.force,
-                                   .noClobber = options_.noClobber,
-                                   .dryRun = options_.dryRun,
-                                   .ifChanged = options_.ifChanged,
-                                   .refreshTimeStamp = !options_.depfile.empty() && !options_.ifChanged,
-                                   .warningsAsErrors = options_.warningsAsErrors};
-        results_[i] = convertAsset(tasks_[i], policy, limits_);
-        return results_[i].outcome != Outcome::Failed;
-    }
-
-    void report(std::size_t i) {
-        const AssetResult& result = results_[i];
-        if (options_.common.json) reporter_.jsonLine(jsonText(assetJson(tasks_[i], result)));
-        reporter_.diagnostics(tasks_[i].source, result.diagnostics);
-        if (result.error) {
-            reporter_.error(*result.error);
-            return;
-        }
-        const bool single = tasks_.size() == 1;
-        const bool isNews = result.outcome == Outcome::Converted || result.outcome == Outcome::Kept;
-        if (options_.explain || options_.dryRun) {
-            // What was asked for is a result. For one file it takes the place of the summary's line.
-            if (!single || options_.explain)
-                reporter_.result(assetLine(tasks_[i], result, options_.explain) + "\n");
-        } else if (!single && (options_.common.verbose || (isNews && !reporter_.showsProgress()))) {
-            reporter_.status(assetLine(tasks_[i], result, false));
-        }
-    }
-
-    void reportUnstarted() {
-        if (!options_.common.json) return;
-        for (std::size_t i = 0; i < tasks_.size(); ++i) {
-            if (results_[i].outcome == Outcome::NotStarted) {
-                reporter_.jsonLine(jsonText(assetJson(tasks_[i], results_[i])));
-            }
-        }
-    }
-
-    bool writeDependencies() {
-        if (options_.depfile.empty() || options_.dryRun) return true;
-        std::vector<DepfileRule> rules;
-        for (std::size_t i = 0; i < tasks_.size(); ++i) {
-            if (results_[i].outcome == Outcome::Failed || results_[i].outcome == Outcome::NotStarted)
-                continue;
-            DepfileRule rule{.target = tasks_[i].output, .prerequisites = {tasks_[i].source}};
-            if (!options_.settingsFile.empty()) rule.prerequisites.emplace_back(options_.settingsFile);
-            rules.push_back(std::move(rule));
-        }
-        const auto written = writeDepfile(options_.depfile, rules);
-        if (!written) reporter_.error(written.error());
-        return written.has_value();
-    }
-
-    ExitCode exitCode() const {
-        std::vector<ErrorCode> failures;
-        for (const AssetResult& result : results_) {
-            if (result.error) failures.push_back(result.error->code);
-        }
-        return exitCodeOf(failures, results_.size());
-    }
-
-    const ConvertOptions& options_;
-    const Limits& limits_;
-    Reporter& reporter_;
-    std::vector<AssetTask> tasks_;
-    std::vector<AssetResult> results_;
-};
-
 InputQuery inputQuery(const ConvertOptions& options) {
-    InputQuery query{.wanted = looksLikeSource, .skippedFolder = {}};
+    const auto wanted = [](const std::filesystem::path& file) {
+        return looksLikeSource(file) || isSceneName(file);
+    };
+    InputQuery query{.wanted = wanted, .skippedFolder = {}};
     if (!namesOutputFile(options.output, kPfVoxExtension)) query.skippedFolder = options.output;
     return query;
+}
+
+/// Scenes are carried over under their own name. In folders the name tells them from settings files; what is
+/// named on the command line is a scene by its extension.
+bool isScene(const InputFile& input) {
+    return input.fromFolder ? isSceneName(input.file) : input.file.extension() == ".toml";
 }
 
 std::vector<AssetTask> makeTasks(const std::vector<InputOutput>& pairs, const SettingsFile& settings,
@@ -252,7 +153,8 @@ std::vector<AssetTask> makeTasks(const std::vector<InputOutput>& pairs, const Se
     for (const InputOutput& pair : pairs) {
         tasks.push_back({.source = pair.input.file,
                          .output = pair.output,
-                         .settings = settings.settingsFor(pair.input.relative, commandLine)});
+                         .settings = settings.settingsFor(pair.input.relative, commandLine),
+                         .isScene = isScene(pair.input)});
     }
     return tasks;
 }
@@ -273,7 +175,7 @@ ExitCode runConvert(const CLI::App& command, const ConvertOptions& options) {
     if (!settings) return stopWith(settings.error());
     auto inputs = collectInputs(options.inputs, inputQuery(options));
     if (!inputs) return stopWith(inputs.error());
-    const auto pairs = pairOutputs(*std::move(inputs), options.output, kPfVoxExtension);
+    const auto pairs = pairOutputs(*std::move(inputs), options.output, kPfVoxExtension, isScene);
     if (!pairs) return usageError(command, pairs.error());
     if (pairs->empty())
         return stopWith(fail(ErrorCode::NothingToConvert, "no input but outputs of this tool").value());

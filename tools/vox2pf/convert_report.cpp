@@ -28,7 +28,10 @@ std::string_view words(Outcome outcome) {
     }
 }
 
-std::string contentText(const ConvertReport& report) {
+std::string contentText(const AssetTask& task, const ConvertReport& report) {
+    if (task.isScene)
+        return fmt::format("scene of {}, {}", plural(report.models, "model"),
+                           formatBytes(report.outputBytes));
     std::string text = fmt::format("{}, {}, {}", plural(report.models, "model"),
                                    plural(report.voxels, "voxel"), formatBytes(report.outputBytes));
     if (report.voxels > 0) {
@@ -69,7 +72,7 @@ std::string closingLine(const Totals& converted, std::size_t warnings, double se
 std::string assetLine(const AssetTask& task, const AssetResult& result, bool explain) {
     std::string text =
         fmt::format("{} {} -> {}", words(result.outcome), task.source.string(), task.output.string());
-    if (result.outcome == Outcome::Converted) text += ": " + contentText(result.report);
+    if (result.outcome == Outcome::Converted) text += ": " + contentText(task, result.report);
     if (explain && !result.reason.empty()) text += fmt::format("; {}", result.reason);
     return text;
 }
@@ -77,6 +80,7 @@ std::string assetLine(const AssetTask& task, const AssetResult& result, bool exp
 Json assetJson(const AssetTask& task, const AssetResult& result) {
     const ConvertReport& report = result.report;
     Json json;
+    json["kind"] = task.isScene ? "scene" : "asset";
     json["source"] = task.source.string();
     json["output"] = task.output.string();
     json["status"] = toString(result.outcome);

@@ -1,0 +1,37 @@
+// Carry scene: a scene.toml among the inputs appears at its mirrored place, its model paths turned to the
+// PF_VOX files (docs/decisions/009-scene-carry-over.md).
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <set>
+#include <span>
+
+#include "vox2pf/convert_asset.hpp"
+
+namespace pfvox::tools {
+
+/// Whether a file of a folder is a scene, by its name: scene.toml or *.scene.toml.
+bool isSceneName(const std::filesystem::path& file);
+
+/// What every source of a run becomes.
+class OutputsOfRun {
+  public:
+    OutputsOfRun() = default;
+    explicit OutputsOfRun(std::span<const AssetTask> tasks);
+
+    /// Where the PF_VOX file of this source is written; null when it is no input of the run.
+    const std::filesystem::path* outputOf(const std::filesystem::path& source) const;
+    bool writes(const std::filesystem::path& output) const;
+
+  private:
+    std::map<std::filesystem::path, std::filesystem::path> outputOf_;  ///< by canonical name
+    std::set<std::filesystem::path> outputs_;
+};
+
+/// Like convertAsset, for a scene. Nothing but the model paths changes. Diagnostics: those of parseScene;
+/// scene-missing-model, scene-model-not-converted.
+AssetResult carryScene(const AssetTask& task, const OutputsOfRun& outputs, const ConvertPolicy& policy,
+                       const Limits& limits);
+
+}  // namespace pfvox::tools

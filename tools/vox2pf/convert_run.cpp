@@ -1,0 +1,89 @@
+#include "vox2pf/convert_run.hpp"
+
+#include "common/batch.hpp"
+#include "common/depfile.hpp"
+#include "common/progress.hpp"
+#include "vox2pf/convert_report.hpp"
+
+namespace pfvox::tools {
+
+ExitCode ConvertRun::run(std::vector<AssetTask> tasks) {
+    tasks_ = std::move(tasks);
+    outputs_ = OutputsOfRun(tasks_);
+    results_.resize(tasks_.size());
+    Progress progress(reporter_, tasks_.size());
+    runBatch(tasks_.size(), {.threads = options_.common.threads, .failFast = options_.failFast},
+             {.work = [&](std::size_t i) { return work(i); },
+              .finished = [&](std::size_t i) { report(i); },
+              .progressed = [&](std::size_t i) { progress.advance(results_[i].report.voxels); }});
+    reporter_.clearProgress();
+    reportUnstarted();
+    const bool depfileGood = writeDependencies();
+    reporter_.result(summary(tasks_, results_, progress.elapsedSeconds()));
+    return depfileGood ? exitCode() : ExitCode::CannotReadOrWrite;
+}
+
+bool ConvertRun::work(std::size_t i) {
+    const ConvertPolicy policy{.force = options_.force,
+                               .noClobber = options_.noClobber,
+                               .dryRun = options_.dryRun,
+                               .ifChanged = options_.ifChanged,
+                               .refreshTimeStamp = !options_.depfile.empty() && !options_.ifChanged,
+                               .warningsAsErrors = options_.warningsAsErrors};
+    results_[i] = tasks_[i].isScene ? carryScene(tasks_[i], outputs_, policy, limits_)
+                                    : convertAsset(tasks_[i], policy, limits_);
+    return results_[i].outcome != Outcome::Failed;
+}
+
+void ConvertRun::report(std::size_t i) {
+    const AssetResult& result = results_[i];
+    if (options_.common.json) reporter_.jsonLine(jsonText(assetJson(tasks_[i], result)));
+    reporter_.diagnostics(tasks_[i].source, result.diagnostics);
+    if (result.error) {
+        reporter_.error(*result.error);
+        return;
+    }
+    const bool single = tasks_.size() == 1;
+    const bool isNews = result.outcome == Outcome::Converted || result.outcome == Outcome::Kept;
+    if (options_.explain || options_.dryRun) {
+        // What was asked for is a result. For one file it takes the place of the summary's line.
+        if (!single || options_.explain)
+            reporter_.result(assetLine(tasks_[i], result, options_.explain) + "\n");
+    } else if (!single && (options_.common.verbose || (isNews && !reporter_.showsProgress()))) {
+        reporter_.status(assetLine(tasks_[i], result, false));
+    }
+}
+
+void ConvertRun::reportUnstarted() {
+    if (!options_.common.json) return;
+    for (std::size_t i = 0; i < tasks_.size(); ++i) {
+        if (results_[i].outcome == Outcome::NotStarted) {
+            reporter_.jsonLine(jsonText(assetJson(tasks_[i], results_[i])));
+        }
+    }
+}
+
+bool ConvertRun::writeDependencies() {
+    if (options_.depfile.empty() || options_.dryRun) return true;
+    std::vector<DepfileRule> rules;
+    for (std::size_t i = 0; i < tasks_.size(); ++i) {
+        if (results_[i].outcome == Outcome::Failed || results_[i].outcome == Outcome::NotStarted) continue;
+        DepfileRule rule{.target = tasks_[i].output, .prerequisites = {tasks_[i].source}};
+        if (!options_.settingsFile.empty() && !tasks_[i].isScene)
+            rule.prerequisites.emplace_back(options_.settingsFile);
+        rules.push_back(std::move(rule));
+    }
+    const auto written = writeDepfile(options_.depfile, rules);
+    if (!written) reporter_.error(written.error());
+    return written.has_value();
+}
+
+ExitCode ConvertRun::exitCode() const {
+    std::vector<ErrorCode> failures;
+    for (const AssetResult& result : results_) {
+        if (result.error) failures.push_back(result.error->code);
+    }
+    return exitCodeOf(failures, results_.size());
+}
+
+}  // namespace pfvox::tools
