@@ -194,10 +194,16 @@ TEST(ProbeGridFit, EmptyAndFlatScenesHaveAGrid) {
     EXPECT_EQ(fitted({}, {.min = {1.0, 1.0, 1.0}, .max = {1.0, 1.0, 1.0}}).count, glm::uvec3(1));
 }
 
-TEST(ProbeGridFit, GivenGridThatIsTooSmallIsNoted) {
+TEST(ProbeGridFit, GridThatDoesNotEncloseIsNotedUnlessAllOfItWasGiven) {
     DiagnosticList diagnostics;
-    const ProbeGridRequest request{
+    ProbeGridRequest request{
         .position = glm::dvec3(0.0), .stepMetres = glm::dvec3(1.0), .count = glm::uvec3(2, 2, 2)};
+    const auto grid = fitProbeGrid(request, kBox, diagnostics);
+    ASSERT_TRUE(grid);
+    EXPECT_EQ(grid->position, glm::dvec3(0.0));
+    EXPECT_EQ(grid->count, glm::uvec3(2));
+    EXPECT_THAT(diagnostics.entries(), IsEmpty());
+    request.count = std::nullopt;
     ASSERT_TRUE(fitProbeGrid(request, kBox, diagnostics));
     ASSERT_EQ(diagnostics.entries().size(), 1u);
     EXPECT_EQ(diagnostics.entries()[0].id, "scene-grid-smaller");

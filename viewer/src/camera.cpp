@@ -8,6 +8,10 @@
 
 namespace pfvox::viewer {
 
+ViewCamera viewCameraOf(const Camera& camera) {
+    return {.position = camera.position, .target = camera.target, .fovYDegrees = camera.fovYDegrees};
+}
+
 CameraFrame frameOf(const ViewCamera& camera) {
     const glm::dvec3 toTarget = camera.target - camera.position;
     CameraFrame frame;

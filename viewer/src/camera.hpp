@@ -13,6 +13,9 @@ struct ViewCamera {
     double fovYDegrees = 40.0;
 };
 
+/// A camera that a scene or an asset holds.
+ViewCamera viewCameraOf(const Camera& camera);
+
 /// Right-handed and orthonormal.
 struct CameraFrame {
     glm::dvec3 forward{0.0, 0.0, -1.0};

@@ -4,7 +4,7 @@
 
 #include <chrono>
 #include <cstdio>
-#include <pfvox/pf_vox.hpp>
+#include <pfvox/scene.hpp>
 
 #include "io/files.hpp"
 #include "png.hpp"
@@ -14,23 +14,24 @@ namespace pfvox::viewer {
 
 namespace {
 
-/// loadPfVox, with the command to run when the file is not what pfview reads.
-Result<OctreeAsset> loadAsset(const std::filesystem::path& file, Diagnostics& diagnostics) {
-    Result<OctreeAsset> asset = loadPfVox(file, Limits{}, diagnostics);
-    if (asset) return asset;
-    Error error = std::move(asset).error();
-    if (error.file.empty()) error.file = file;
-    if (error.code == ErrorCode::BadMagic) {
-        std::filesystem::path built = file;
-        built.replace_extension(".pf_vox");
-        error.message = fmt::format("not a PF_VOX file; build one from the source first: vox2pf '{}' -o '{}'",
-                                    file.string(), built.string());
-        error.context.clear();
-        error.offsetBytes.reset();
-    } else if (error.code == ErrorCode::UnsupportedVersion) {
-        error.message += "; build it again from its source with this version's vox2pf";
+/// The camera that was asked for; a scene's first one when nothing was; nothing = frame everything.
+Result<std::optional<ViewCamera>> chosenCamera(const Options& options, const Scene& scene) {
+    if (options.camera) return options.camera;
+    if (options.cameraName.empty()) {
+        const bool isScene = options.file.extension() == ".toml";
+        return isScene && !scene.cameras.empty() ? std::optional(viewCameraOf(scene.cameras.front()))
+                                                 : std::nullopt;
     }
-    return tl::make_unexpected(std::move(error));
+    std::string names;
+    for (const Camera& camera : scene.cameras) {
+        if (camera.name == options.cameraName) return std::optional(viewCameraOf(camera));
+        if (!camera.name.empty()) names += fmt::format("{}'{}'", names.empty() ? "" : ", ", camera.name);
+    }
+    return tl::make_unexpected(
+        Error{.code = ErrorCode::BadReference,
+              .message = fmt::format("there is no camera '{}'; {}", options.cameraName,
+                                     names.empty() ? "no camera has a name" : "there is " + names),
+              .file = options.file});
 }
 
 Result<void> writeStatistics(const std::string& target, const std::string& json) {
@@ -57,24 +58,24 @@ void reportFindings(const RunReport& run, const gpu::Device& device, Diagnostics
 
 Result<void> runHeadless(const Options& options, Diagnostics& diagnostics) {
     const auto started = std::chrono::steady_clock::now();
-    PFVOX_TRY(const OctreeAsset, asset, loadAsset(options.file, diagnostics));
+    PFVOX_TRY(const LoadedScene, loaded, loadScene(options.file, Limits{}, diagnostics));
+    PFVOX_TRY(const std::optional<ViewCamera>, camera, chosenCamera(options, loaded.scene));
+    PictureSettings settings = options.picture;
+    settings.lighting = lightingOf(loaded.scene);
     const std::chrono::duration<double, std::milli> loadTime = std::chrono::steady_clock::now() - started;
 
     PFVOX_TRY(gpu::Device, device,
               gpu::Device::open({.selector = options.device, .validation = options.validation}));
-    const gpu::ScenePart part{.asset = &asset};
-    PFVOX_TRY(const gpu::Scene, scene, gpu::Scene::build(device, {&part, 1}, diagnostics));
+    PFVOX_TRY(const gpu::Scene, scene, gpu::Scene::build(device, gpu::partsOf(loaded), diagnostics));
     PFVOX_TRY(const PictureRenderer, renderer, PictureRenderer::create(device));
 
     const double aspect = static_cast<double>(options.picture.width) / options.picture.height;
-    RunReport run{
-        .device = device.info(),
-        .scene = scene.statistics(),
-        .camera = options.camera.value_or(cameraFraming(scene.bounds(), aspect, ViewCamera{}.fovYDegrees)),
-        .settings = options.picture,
-        .loadMs = loadTime.count()};
-    PFVOX_TRY(const Picture, picture,
-              renderer.render(device, scene, run.camera, options.picture, run.picture));
+    RunReport run{.device = device.info(),
+                  .scene = scene.statistics(),
+                  .camera = camera.value_or(cameraFraming(scene.bounds(), aspect, ViewCamera{}.fovYDegrees)),
+                  .settings = settings,
+                  .loadMs = loadTime.count()};
+    PFVOX_TRY(const Picture, picture, renderer.render(device, scene, run.camera, settings, run.picture));
     run.memory = device.memory();
     PFVOX_CHECK(writePng(options.screenshot, picture));
     PFVOX_CHECK(writeStatistics(options.statisticsFile, toJson(run)));

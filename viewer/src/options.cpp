@@ -17,6 +17,7 @@ constexpr std::uint32_t kMaxEdge = 16384;
 constexpr const char* kFooter = R"(Examples:
   pfview hall.pf_vox --screenshot hall.png
   pfview hall.pf_vox --screenshot hall.png --size 640x480 --view normals
+  pfview scene.toml --screenshot court.png --camera court
   pfview hall.pf_vox --screenshot hall.png --camera 4,3,8,0,1,0,50 --stats-json -
 
 Exit codes: 0 ok, 2 usage, 3 cannot read or write, 4 invalid input, 5 unsupported feature or version, 6 GPU unavailable or
@@ -74,7 +75,7 @@ struct RawOptions {
 
 void declare(CLI::App& app, Options& options, RawOptions& raw) {
     app.set_version_flag("--version", fmt::format("pfview {}\nreads PF_VOX 1.x", PFVOX_VERSION));
-    app.add_option("file", options.file, "The .pf_vox file to look at")->type_name("FILE");
+    app.add_option("file", options.file, "The .pf_vox file or scene (.toml) to look at")->type_name("FILE");
     app.footer(kFooter);
 
     CLI::Option_group* const picture = app.add_option_group("Picture");
@@ -82,9 +83,11 @@ void declare(CLI::App& app, Options& options, RawOptions& raw) {
         ->type_name("PNG");
     picture->add_option("--size", raw.size, "Pixels, default 1280x720")->type_name("WxH");
     picture
-        ->add_option("--camera", raw.camera,
-                     "px,py,pz,tx,ty,tz[,fovY] in metres and degrees; default: frames everything")
-        ->type_name("NUMBERS");
+        ->add_option(
+            "--camera", raw.camera,
+            "Name of a camera, or px,py,pz,tx,ty,tz[,fovY] in metres and degrees; default: the scene's "
+            "first camera, else frames everything")
+        ->type_name("CAMERA");
     picture->add_option("--view", raw.view, "final, albedo, normals, material, depth or steps; default final")
         ->type_name("MODE");
     picture
@@ -110,14 +113,18 @@ void declare(CLI::App& app, Options& options, RawOptions& raw) {
 
 void understand(const RawOptions& raw, Options& options) {
     if (!raw.size.empty()) parseSize(raw.size, options.picture);
-    if (!raw.camera.empty()) options.camera = parseCamera(raw.camera);
+    if (raw.camera.find(',') != std::string::npos) {
+        options.camera = parseCamera(raw.camera);
+    } else {
+        options.cameraName = raw.camera;
+    }
     if (!raw.view.empty()) {
         const std::optional<ViewMode> mode = viewModeFrom(raw.view);
         if (!mode) throw CLI::ValidationError("--view", fmt::format("there is no view '{}'", raw.view));
         options.picture.mode = *mode;
     }
     if (options.listDevices) return;
-    if (options.file.empty()) throw CLI::ValidationError("file", "a .pf_vox file is needed");
+    if (options.file.empty()) throw CLI::ValidationError("file", "a .pf_vox file or a scene is needed");
     if (options.screenshot.empty()) {
         throw CLI::ValidationError("--screenshot", "is needed: this version has no window yet");
     }
@@ -126,7 +133,7 @@ void understand(const RawOptions& raw, Options& options) {
 }  // namespace
 
 std::variant<Options, EarlyExit> parseOptions(int argc, const char* const* argv) {
-    CLI::App app("Shows a .pf_vox file.", "pfview");
+    CLI::App app("Shows a .pf_vox file or a scene of such files.", "pfview");
     Options options;
     RawOptions raw;
     try {

@@ -15,7 +15,8 @@ struct Options {
     std::filesystem::path file;
     std::filesystem::path screenshot;
     PictureSettings picture;
-    std::optional<ViewCamera> camera;  ///< default: frames everything
+    std::optional<ViewCamera> camera;  ///< default: the scene's first, else frames everything
+    std::string cameraName;            ///< of the scene or file, instead of `camera`
     std::string device;                ///< gpu::DeviceOptions::selector
     std::string statisticsFile;        ///< "-" = stdout, empty = none
     bool listDevices = false;

@@ -64,6 +64,15 @@ std::uint64_t join(std::uint32_t low, std::uint32_t high) {
 
 }  // namespace
 
+Lighting lightingOf(const Scene& scene) {
+    // Normalised here, in double: the length may be more than the square of a float holds.
+    return {.sunDirection = glm::vec3(glm::normalize(scene.sun.direction)),
+            .sunIrradiance = glm::vec3(scene.sun.irradiance),
+            .skyZenith = glm::vec3(scene.sky.zenith),
+            .skyHorizon = glm::vec3(scene.sky.horizon),
+            .skyGround = glm::vec3(scene.sky.ground)};
+}
+
 std::optional<ViewMode> viewModeFrom(std::string_view name) {
     for (const NamedMode& entry : kModes) {
         if (entry.name == name) return entry.mode;

@@ -8,6 +8,7 @@
 #include <optional>
 #include <pfvox/gpu.hpp>
 #include <pfvox/gpu_scene.hpp>
+#include <pfvox/scene.hpp>
 #include <string_view>
 #include <vector>
 
@@ -43,6 +44,7 @@ struct Lighting {
     glm::vec3 skyGround{0.24f, 0.23f, 0.22f};
     float exposure = 1.0f;
 };
+Lighting lightingOf(const Scene& scene);
 
 struct PictureSettings {
     std::uint32_t width = 1280;

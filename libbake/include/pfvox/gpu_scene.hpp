@@ -10,6 +10,7 @@
 #include <pfvox/gpu.hpp>
 #include <pfvox/math.hpp>
 #include <pfvox/octree.hpp>
+#include <pfvox/scene.hpp>
 #include <span>
 #include <vector>
 
@@ -20,6 +21,9 @@ struct ScenePart {
     const OctreeAsset* asset = nullptr;
     Affine worldFromAsset = identityAffine();
 };
+
+/// The visible models of a scene file, as Scene::build takes them. They point into `scene`.
+std::vector<ScenePart> partsOf(const LoadedScene& scene);
 
 /// A box in the world, in metres. Empty when min > max.
 struct WorldBox {

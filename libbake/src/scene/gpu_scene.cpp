@@ -99,6 +99,14 @@ Result<Buffer> uploadTable(Device& device, const SceneRecords& records,
 
 }  // namespace
 
+std::vector<ScenePart> partsOf(const LoadedScene& scene) {
+    std::vector<ScenePart> parts;
+    for (const PlacedAsset& part : scene.parts) {
+        parts.push_back({.asset = part.asset.get(), .worldFromAsset = part.worldFromAsset});
+    }
+    return parts;
+}
+
 Result<Scene> Scene::build(Device& device, std::span<const ScenePart> parts, Diagnostics& diagnostics) {
     const auto started = std::chrono::steady_clock::now();
     PFVOX_TRY(const SceneRecords, records, makeRecords(parts, diagnostics));

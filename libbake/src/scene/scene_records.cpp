@@ -67,8 +67,7 @@ class RecordMaker {
 
     Result<void> add(const ScenePart& part) {
         const OctreeAsset& asset = *part.asset;
-        const auto firstMaterial = static_cast<std::uint32_t>(records_.materials.size());
-        for (const Material& material : asset.materials) records_.materials.push_back(recordOf(material));
+        const std::uint32_t firstMaterial = firstMaterialOf(asset);
         for (const pfvox::Instance& instance : asset.instances) {
             const std::uint32_t id = nextId_++;
             if (instance.model >= asset.models.size()) {
@@ -95,10 +94,14 @@ class RecordMaker {
     }
 
   private:
-    static bool isHidden(const OctreeAsset& asset, const pfvox::Instance& instance) {
-        if (instance.hidden) return true;
-        const auto layer = static_cast<std::size_t>(instance.layer);
-        return instance.layer >= 0 && layer < asset.layers.size() && asset.layers[layer].hidden;
+    /// An asset that stands in several places has its materials once.
+    std::uint32_t firstMaterialOf(const OctreeAsset& asset) {
+        const auto next = static_cast<std::uint32_t>(records_.materials.size());
+        const auto [entry, added] = firstMaterialOf_.try_emplace(&asset, next);
+        if (added) {
+            for (const Material& material : asset.materials) records_.materials.push_back(recordOf(material));
+        }
+        return entry->second;
     }
 
     void addInstance(const pfvox::Instance& instance, const Affine& worldFromAsset, UsedModel used,
@@ -140,6 +143,7 @@ class RecordMaker {
     SceneRecords& records_;
     Diagnostics& diagnostics_;
     std::unordered_map<const OctreeModel*, std::uint32_t> indexOf_;
+    std::unordered_map<const OctreeAsset*, std::uint32_t> firstMaterialOf_;
     std::vector<shared::InstanceRecord> unordered_;
     std::vector<Box> boxes_;
     std::uint32_t nextId_ = 0;

@@ -148,7 +148,7 @@ struct ProbeGrid {
 
 /// Fills what the request leaves out so that the grid encloses the box; with nothing given, the longest edge
 /// of the box has nine probes. Errors: LimitExceeded (kMaxProbesPerAxis, kMaxProbes). Diagnostics: the note
-/// scene-grid-smaller when a given grid does not enclose the box.
+/// scene-grid-smaller when the grid does not enclose the box, unless all of it was given.
 Result<ProbeGrid> fitProbeGrid(const ProbeGridRequest& request, const WorldBounds& bounds,
                                Diagnostics& diagnostics);
 

@@ -54,7 +54,8 @@ Result<ProbeGrid> fitProbeGrid(const ProbeGridRequest& request, const WorldBound
     const glm::dvec3 slack = 1e-6 * grid.stepMetres;
     const bool encloses = glm::all(glm::lessThanEqual(grid.position - slack, low)) &&
                           glm::all(glm::greaterThanEqual(grid.position + extent + slack, high));
-    if (!encloses) diagnostics.note("scene-grid-smaller", "the probe grid does not enclose all models");
+    const bool asGiven = request.position && request.stepMetres && request.count;
+    if (!encloses && !asGiven) diagnostics.note("scene-grid-smaller", "the probe grid does not enclose all models");
     return grid;
 }
 
