@@ -255,14 +255,13 @@ std::string describe(const FloatRay& ray, const gpu::GpuHit& found, const Answer
     return text.str();
 }
 
-std::vector<gpu::GpuHit> castOnGpu(gpu::Device& device, const OctreeAsset& asset,
+std::vector<gpu::GpuHit> castOnGpu(gpu::Device& device, std::span<const gpu::ScenePart> parts,
                                    std::span<const FloatRay> rays) {
     std::vector<gpu::GpuRay> gpuRays;
     for (const FloatRay& ray : rays) gpuRays.push_back({.origin = ray.origin, .direction = ray.direction});
     DiagnosticList diagnostics;
-    const gpu::ScenePart part{.asset = &asset};
     const auto cast = [&]() -> Result<gpu::RayBatch> {
-        PFVOX_TRY(const gpu::Scene, scene, gpu::Scene::build(device, {&part, 1}, diagnostics));
+        PFVOX_TRY(const gpu::Scene, scene, gpu::Scene::build(device, parts, diagnostics));
         PFVOX_TRY(const gpu::RayQuery, query, gpu::RayQuery::create(device));
         return query.cast(device, scene, gpuRays, gpu::RayMode::ClosestHit);
     };
@@ -292,7 +291,13 @@ std::vector<RayFamily> rayFamilies(Random& random, const OctreeAsset& asset, std
 }
 
 Comparison compare(gpu::Device& device, const OctreeAsset& asset, std::span<const FloatRay> rays) {
-    const std::vector<gpu::GpuHit> hits = castOnGpu(device, asset, rays);
+    const gpu::ScenePart part{.asset = &asset};
+    return compare(device, {&part, 1}, asset, rays);
+}
+
+Comparison compare(gpu::Device& device, std::span<const gpu::ScenePart> parts, const OctreeAsset& asset,
+                   std::span<const FloatRay> rays) {
+    const std::vector<gpu::GpuHit> hits = castOnGpu(device, parts, rays);
     const Judge judge(asset);
     enum class Verdict : std::uint8_t { Same, Tie, Disagreement };
     std::vector<Verdict> verdicts(hits.size());

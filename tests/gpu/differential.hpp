@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <pfvox/gpu.hpp>
+#include <pfvox/gpu_scene.hpp>
 #include <pfvox/octree.hpp>
 #include <span>
 #include <string>
@@ -44,5 +45,9 @@ std::vector<RayFamily> rayFamilies(Random& random, const OctreeAsset& asset, std
 
 /// Casts the rays on both sides.
 Comparison compare(gpu::Device& device, const OctreeAsset& asset, std::span<const FloatRay> rays);
+
+/// The same for a scene of several parts; `asset` is what they are together.
+Comparison compare(gpu::Device& device, std::span<const gpu::ScenePart> parts, const OctreeAsset& asset,
+                   std::span<const FloatRay> rays);
 
 }  // namespace pfvox::test

@@ -116,7 +116,43 @@ TEST_F(PfviewCli, SourceFileGetsTheCommandToRun) {
     write("hall.vox", "VOX \x96\0\0\0 and so on, long enough to have a header of some kind ..............");
     const Outcome r = run("hall.vox --screenshot a.png");
     EXPECT_EQ(r.exitCode, 4);
-    EXPECT_THAT(r.err, HasSubstr("vox2pf 'hall.vox' -o 'hall.pf_vox'"));
+    EXPECT_THAT(r.err, HasSubstr("vox2pf convert 'hall.vox' -o 'hall.pf_vox'"));
+    EXPECT_FALSE(fs::exists(folder_ / "a.png"));
+}
+
+TEST_F(PfviewCli, SceneIsDrawnByItsCameras) {
+    writeRoom("room.pf_vox");
+    write("s.toml",
+          "[[cameras]]\nname = 'near'\nposition = [3, 2, 9]\ntarget = [3, 2, 0]\n"
+          "[[cameras]]\nname = 'far'\nposition = [3, 2, 90]\ntarget = [3, 2, 0]\nfovYDegrees = 30\n"
+          "[[models]]\npath = 'room.pf_vox'\n[[models]]\npath = 'room.pf_vox'\ntranslateVec = [8, 0, 0]\n");
+    const std::string picture = "s.toml --screenshot a.png --size 32x32 --samples 1 --stats-json - ";
+    const Outcome far = run(picture + "--camera far");
+    EXPECT_EQ(far.exitCode, 0) << far.err;
+    EXPECT_THAT(far.err, IsEmpty());
+    EXPECT_THAT(far.out, HasSubstr("\"fovYDegrees\": 30.0"));
+    EXPECT_THAT(far.out, HasSubstr("\"instances\": 2,"));
+    const Outcome first = run(picture);
+    EXPECT_THAT(first.out, HasSubstr("\"fovYDegrees\": 45.0")) << "the scene's first camera";
+    const Outcome none = run(picture + "--camera middle");
+    EXPECT_EQ(none.exitCode, 4);
+    EXPECT_THAT(none.err, HasSubstr("there is no camera 'middle'; there is 'near', 'far'"));
+    EXPECT_THAT(run(picture + "--camera 3,2,9,3,2,0,60").out, HasSubstr("\"fovYDegrees\": 60.0"));
+}
+
+TEST_F(PfviewCli, BrokenSceneAndSceneOfSourcesTellWhatToDo) {
+    write("s.toml", "[[models]]\npath = 'hall.vox'\n");
+    const Outcome missing = run("s.toml --screenshot a.png");
+    EXPECT_EQ(missing.exitCode, 3);
+    EXPECT_THAT(missing.err, HasSubstr("s.toml: line 2, column 8: hall.vox"));
+    write("hall.vox", "VOX \x96\0\0\0 and so on, long enough to have a header of some kind ..............");
+    const Outcome source = run("s.toml --screenshot a.png");
+    EXPECT_EQ(source.exitCode, 4);
+    EXPECT_THAT(source.err, HasSubstr("vox2pf convert 'hall.vox' -o 'hall.pf_vox'"));
+    write("s.toml", "[sun]\ndirection = 1\n");
+    const Outcome broken = run("s.toml --screenshot a.png");
+    EXPECT_EQ(broken.exitCode, 4);
+    EXPECT_THAT(broken.err, HasSubstr("s.toml: line 2, column 13: direction is a list of 3 numbers"));
     EXPECT_FALSE(fs::exists(folder_ / "a.png"));
 }
 
