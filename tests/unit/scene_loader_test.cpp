@@ -124,6 +124,16 @@ TEST_F(SceneLoader, GridThatIsTooLargeIsTheScenesFault) {
     EXPECT_EQ(error.file, folder / "scenes/s.toml");
 }
 
+TEST_F(SceneLoader, InstancesOfAllModelsAreCountedAgainstTheLimit) {
+    const std::string model = "[[models]]\npath = '../b.pf_vox'\n";
+    EXPECT_TRUE(load(model + model, Limits{.maxInstances = 2}));
+    const auto loaded = load(model + model + model, Limits{.maxInstances = 2});
+    ASSERT_FALSE(loaded);
+    EXPECT_EQ(loaded.error().code, ErrorCode::LimitExceeded);
+    EXPECT_EQ(loaded.error().context, "line 6, column 8");
+    EXPECT_THAT(loaded.error().message, HasSubstr("maxInstances = 2"));
+}
+
 TEST_F(SceneLoader, PfVoxFileStandsAtTheOriginUnderTheDefaultLight) {
     OctreeAsset asset = boxAsset({{0, 0, 0}, {8, 2, 2}}, 0.1);
     asset.cameras = {{.name = "front", .position = {1, 2, 3}, .target = {0, 0, 0}, .fovYDegrees = 50}};

@@ -224,6 +224,17 @@ TEST(SceneFile, UnknownKeysAreWarnedAboutWithPlaceAndWhatThereIs) {
     EXPECT_THAT(p.diagnostics[2].message, AllOf(HasSubstr("line 6, column 2"), HasSubstr("extra")));
 }
 
+TEST(SceneFile, WarningsWithoutEndAreCounted) {
+    std::string text;
+    for (int i = 0; i < 150; ++i) text += "key" + std::to_string(i) + " = 1\n";
+    const Parsed p = parse(text);
+    EXPECT_TRUE(p.scene);
+    ASSERT_EQ(p.diagnostics.size(), 101u);
+    EXPECT_THAT(p.diagnostics[99].message, HasSubstr("line 100, column 1"));
+    EXPECT_EQ(p.diagnostics[100].id, "scene-more-warnings");
+    EXPECT_THAT(p.diagnostics[100].message, HasSubstr("50 more"));
+}
+
 TEST(SceneFile, TwoCamerasOfOneNameAreWarnedAbout) {
     const std::string camera = "[[cameras]]\nname = 'a'\nposition = [1, 2, 3]\ntarget = [0, 0, 0]\n";
     const Parsed p = parse(camera + camera);

@@ -81,7 +81,8 @@ inline constexpr std::uint32_t kMaxProbes = 1u << 20;
 /// Errors, each with file, line and column: BadStructure (not TOML, nested too deeply), BadValue (wrong type,
 /// length or range, NaN, a transform that cannot be inverted, a missing key), LimitExceeded (kMaxSceneBytes,
 /// Limits::maxModels for models and for cameras). When several values are wrong, the message lists the first
-/// ten. Diagnostics, with line and column: scene-unknown-key, scene-duplicate-camera.
+/// ten. Diagnostics, with line and column: scene-unknown-key, scene-duplicate-camera; scene-more-warnings
+/// after the first hundred.
 Result<Scene> parseScene(std::string_view text, const std::filesystem::path& file, const Limits& limits,
                          Diagnostics& diagnostics);
 

@@ -134,12 +134,22 @@ Result<LoadedScene> loadScene(const fs::path& file, const Limits& limits, Diagno
     PFVOX_TRY(scene::ParsedScene, parsed, scene::readWithPlaces(file, limits, named));
     LoadedScene loaded{.scene = std::move(parsed.scene), .parts = {}, .bounds = {}, .probes = {}};
     AssetShelf shelf(limits, diagnostics);
+    std::uint64_t instances = 0;
     for (std::size_t i = 0; i < loaded.scene.models.size(); ++i) {
         const SceneModel& model = loaded.scene.models[i];
         if (!model.visible) continue;
         auto asset = shelf.get((file.parent_path() / fs::path(model.path)).lexically_normal());
         if (!asset) {
             return tl::make_unexpected(inScene(std::move(asset).error(), file, parsed.paths[i].text()));
+        }
+        instances += (*asset)->instances.size();
+        if (instances > limits.maxInstances) {
+            return tl::make_unexpected(Error{
+                .code = ErrorCode::LimitExceeded,
+                .message = fmt::format("with this model the scene has more instances than maxInstances = {}",
+                                       limits.maxInstances),
+                .file = file,
+                .context = parsed.paths[i].text()});
         }
         const Affine world = worldFromAsset(model, **asset);
         loaded.parts.push_back({.asset = *std::move(asset), .worldFromAsset = world, .model = i});

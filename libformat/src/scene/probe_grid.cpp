@@ -55,7 +55,8 @@ Result<ProbeGrid> fitProbeGrid(const ProbeGridRequest& request, const WorldBound
     const bool encloses = glm::all(glm::lessThanEqual(grid.position - slack, low)) &&
                           glm::all(glm::greaterThanEqual(grid.position + extent + slack, high));
     const bool asGiven = request.position && request.stepMetres && request.count;
-    if (!encloses && !asGiven) diagnostics.note("scene-grid-smaller", "the probe grid does not enclose all models");
+    if (!encloses && !asGiven)
+        diagnostics.note("scene-grid-smaller", "the probe grid does not enclose all models");
     return grid;
 }
 

@@ -37,31 +37,31 @@ Result<std::string> withModelPaths(std::string_view text, const std::filesystem:
                                    const NewModelPath& newPath) {
     PFVOX_TRY(scene::ParsedScene, parsed, scene::parseWithPlaces(text, file, limits, diagnostics));
     struct Edit {
-        std::size_t begin = 0;
-        std::size_t end = 0;
-        std::string quoted;
+        scene::PathPlace place;
+        std::string path;
     };
     std::vector<Edit> edits;
     for (std::size_t i = 0; i < parsed.paths.size(); ++i) {
         SceneModel& model = parsed.scene.models[i];
         const std::optional<std::string> path = newPath({.model = model, .place = parsed.paths[i].text()});
         if (!path || *path == model.path) continue;
-        const std::size_t begin = scene::offsetOf(text, parsed.paths[i].begin);
-        const std::size_t end = scene::offsetOf(text, parsed.paths[i].end);
-        if (begin >= end || end > text.size()) {
-            return fail(ErrorCode::Internal, "the place of a path is not in the text");
-        }
-        edits.push_back({begin, end, quotedLike(text.substr(begin, end - begin), *path)});
+        edits.push_back({parsed.paths[i], *path});
         model.path = *path;
     }
-    // Inline tables may be in another order than the text.
-    std::ranges::sort(edits, {}, &Edit::begin);
+    // Models are in the order of the text, but nothing of TOML promises it.
+    std::ranges::sort(edits, {}, [](const Edit& edit) { return edit.place.begin; });
+    scene::PlaceFinder finder(text);
     std::string edited;
     std::size_t done = 0;
     for (const Edit& edit : edits) {
-        edited += text.substr(done, edit.begin - done);
-        edited += edit.quoted;
-        done = edit.end;
+        const std::size_t begin = finder.find(edit.place.begin);
+        const std::size_t end = finder.find(edit.place.end);
+        if (begin >= end || end > text.size()) {
+            return fail(ErrorCode::Internal, "the place of a path is not in the text");
+        }
+        edited += text.substr(done, begin - done);
+        edited += quotedLike(text.substr(begin, end - begin), edit.path);
+        done = end;
     }
     edited += text.substr(done);
 

@@ -130,10 +130,16 @@ void TomlFields::warn(const toml::source_region& place, std::string id, std::str
 
 Result<void> TomlFields::finish(const std::filesystem::path& file, Diagnostics& diagnostics) {
     constexpr std::size_t kShown = 10;
+    constexpr std::size_t kShownWarnings = 100;
     inOrderOfText(warnings_);
     inOrderOfText(errors_);
-    for (const Complaint& warning : warnings_) {
+    for (std::size_t i = 0; i < std::min(warnings_.size(), kShownWarnings); ++i) {
+        const Complaint& warning = warnings_[i];
         diagnostics.warn(warning.id, fmt::format("{}: {}", placeText(warning.place), warning.message));
+    }
+    if (warnings_.size() > kShownWarnings) {
+        diagnostics.warn("scene-more-warnings",
+                         fmt::format("and {} more warnings", warnings_.size() - kShownWarnings));
     }
     if (errors_.empty()) return {};
     std::string message = errors_.front().message;

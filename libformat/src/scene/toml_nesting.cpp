@@ -78,20 +78,21 @@ TextPlace placeOf(std::string_view text, std::size_t offset) {
     return place;
 }
 
-std::size_t offsetOf(std::string_view text, TextPlace place) {
+PlaceFinder::PlaceFinder(std::string_view text) : text_(text) {
     constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
-    std::size_t at = text.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0;
-    for (std::uint32_t line = 1; line < place.line; ++line) {
-        const std::size_t end = text.find('\n', at);
-        if (end == std::string_view::npos) return end;
-        at = end + 1;
+    if (text.starts_with(kByteOrderMark)) at_ = kByteOrderMark.size();
+}
+
+std::size_t PlaceFinder::find(TextPlace place) {
+    while (place_ < place && at_ < text_.size()) {
+        if (text_[at_++] == '\n') {
+            place_ = {place_.line + 1, 1};
+            continue;
+        }
+        while (at_ < text_.size() && continuesCodePoint(text_[at_])) ++at_;
+        ++place_.column;
     }
-    for (std::uint32_t column = 1; column < place.column; ++column) {
-        if (at >= text.size()) return std::string_view::npos;
-        ++at;
-        while (at < text.size() && continuesCodePoint(text[at])) ++at;
-    }
-    return at;
+    return place_ == place ? at_ : std::string_view::npos;
 }
 
 }  // namespace pfvox::scene

@@ -4,6 +4,7 @@
 // destruction overflows the stack. This looks before it parses.
 #pragma once
 
+#include <compare>
 #include <cstdint>
 #include <optional>
 #include <string_view>
@@ -13,7 +14,7 @@ namespace pfvox::scene {
 struct TextPlace {
     std::uint32_t line = 1;
     std::uint32_t column = 1;  ///< in code points
-    bool operator==(const TextPlace&) const = default;
+    auto operator<=>(const TextPlace&) const = default;
 };
 
 inline constexpr int kMaxNesting = 32;  ///< open brackets, and segments of one key
@@ -21,8 +22,20 @@ inline constexpr int kMaxNesting = 32;  ///< open brackets, and segments of one 
 /// The first place where the text nests deeper than kMaxNesting.
 std::optional<TextPlace> tooDeepAt(std::string_view text);
 
-/// Line and column of a byte, and back: npos where there is no such place.
+/// Line and column of a byte.
 TextPlace placeOf(std::string_view text, std::size_t offset);
-std::size_t offsetOf(std::string_view text, TextPlace place);
+
+/// From places to bytes, for places in the order of the text: all of them cost one walk.
+class PlaceFinder {
+  public:
+    explicit PlaceFinder(std::string_view text);
+    /// npos where there is no such place, or it lies before the last one.
+    std::size_t find(TextPlace place);
+
+  private:
+    std::string_view text_;
+    std::size_t at_ = 0;
+    TextPlace place_;
+};
 
 }  // namespace pfvox::scene
