@@ -40,7 +40,7 @@ class ProbeFileReader {
     ~ProbeFileReader();
 
     const ProbeFieldInfo& info() const;
-    const ContentKey& contentKey() const;
+    ContentKey contentKey() const;
     std::uint64_t fileBytes() const;
     const std::optional<ProximityGrid>& proximity() const;
 
@@ -126,7 +126,7 @@ struct ProbeMergeSettings {
     ContentKey contentKey;
     std::optional<ProximityGrid> proximity;  ///< for the output; those of the inputs are dropped, but a
                                              ///< single input's is kept when none is given here
-    bool allowPart = false;  ///< the output may be a shard again, as long as it has no holes
+    bool allowPart = false;                  ///< the output may be a shard again, as long as it has no holes
 };
 
 /// Joins shards, in any order, to one file. Maps are copied as they are stored, so that the bytes are those
