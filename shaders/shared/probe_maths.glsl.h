@@ -36,7 +36,7 @@ using glm::uintBitsToFloat;
 PFVOX_CONSTANT(uint, kDepthMiss, 65535u);     // the texel sees no surface
 PFVOX_CONSTANT(uint, kMaxDepthCode, 65534u);  // Far, and all beyond
 PFVOX_CONSTANT(uint, kMinDepthBlock, 16u);    // texels of a min map stand for so many squared
-PFVOX_CONSTANT(float, kTexelRadiansOfEdge1, 4.5573f);   // widest texel of a map of edge S: this / S = 0.255 degrees at 1024
+PFVOX_CONSTANT(float, kTexelRadiansOfEdge1, 4.5573f);  // of a typical wide texel, times S: 0.255 degrees at 1024
 PFVOX_CONSTANT(float, kSurfaceSlackMetres, 0.01f);
 PFVOX_CONSTANT(float, kSurfaceSlackTexels, 0.75f);
 PFVOX_CONSTANT(float, kSurfaceMinCosine, 0.05f);
@@ -95,7 +95,8 @@ PFVOX_FUNCTION float texelSolidAngle(uint x, uint y, uint edge) {
     return texel * texel / (squared * sqrt(squared));
 }
 
-// The widest angle of a texel, radians.
+// The angle of a texel, radians, as the surface test means it: it was tuned with this figure. The widest texel, in the
+// middle of an octant, has 2 sqrt(6) / edge, 7 % more; the narrowest, at an axis, 2 / edge.
 PFVOX_FUNCTION float texelAngle(uint edge) { return kTexelRadiansOfEdge1 / float(edge); }
 
 // ---- Border of one texel around maps that are read bilinearly ----
