@@ -5,8 +5,10 @@
 
 #include <cmath>
 #include <functional>
+#include <pfvox/probe_file.hpp>
 #include <random>
 
+#include "pf_probe/frame_codec.hpp"
 #include "support/pf_probe_surgery.hpp"
 
 namespace pfvox {
@@ -122,6 +124,22 @@ TEST(PfProbeHostile, UnknownSections) {
     expectRefused(test::closeProbeFile(open), ErrorCode::UnsupportedFeature, "XTRA");
 }
 
+TEST(PfProbeHostile, FramesOfOtherSizesBehindTheHashes) {
+    // The zstd frame of another map: whole and valid, but not of this size.
+    DiagnosticList diagnostics;
+    const auto reader = ProbeFileReader::overBytes(sampleFile(), Limits{}, diagnostics).value();
+    const auto other = reader.readStored(0, ProbeLayer::MinDepth).value();
+    ASSERT_EQ(reader.frame(0, ProbeLayer::DepthNormal).codec, "predicted");
+    const auto stored = reader.readStored(1, ProbeLayer::DepthNormal).value();
+    std::vector<std::byte> words(reader.info().resolution.bytesOf(ProbeLayer::Light));
+    const probe_layout::Frame frame{static_cast<std::uint32_t>(stored.size()), pl::FrameCodec::Predicted, 0};
+    const auto unpacked = probe::unpackFrame(ProbeLayer::Light, frame, stored, words);
+    ASSERT_FALSE(unpacked);
+    EXPECT_EQ(unpacked.error().code, ErrorCode::BadStructure);
+    EXPECT_FALSE(probe::unpackFrame(ProbeLayer::Light, frame, {}, words));
+    EXPECT_FALSE(probe::unpackFrame(ProbeLayer::Light, {0, pl::FrameCodec::Raw, 0}, other, words));
+}
+
 struct Lie {
     const char* name;
     ErrorCode code;
@@ -199,9 +217,8 @@ std::vector<Lie> lies() {
         {"active probe without maps", BadStructure, record(3, [](pl::Record& r) { r.state = 0; })},
         {"frame of 4 GiB", BadStructure, frame(0, [](pl::Frame& f) { f.storedBytes = ~0u; })},
         {"frame of one byte", BadStructure, frame(0, [](pl::Frame& f) { f.storedBytes = 1; })},
-        {"codec 3", UnsupportedFeature, frame(1, [](pl::Frame& f) { f.codec = static_cast<pl::FrameCodec>(3); })},
-        {"planes as raw", BadStructure, frame(0, [](pl::Frame& f) { f.codec = pl::FrameCodec::Raw; })},
-        {"planes as zstd", ChecksumMismatch, frame(0, [](pl::Frame& f) { f.codec = pl::FrameCodec::Zstd; })},
+        {"codec 2", UnsupportedFeature, frame(1, [](pl::Frame& f) { f.codec = static_cast<pl::FrameCodec>(2); })},
+        {"compressed as raw", BadStructure, frame(0, [](pl::Frame& f) { f.codec = pl::FrameCodec::Raw; })},
         {"hash of another map", ChecksumMismatch, frame(0, [](pl::Frame& f) { f.rawHash ^= 1; })},
         {"frames of one probe less", BadStructure, [](OpenFile& open) {
              OpenFile::Part& part = open.part("FRAM");

@@ -213,7 +213,7 @@ struct ProbeField {
 };
 
 struct ProbeEncodeSettings {
-    int zstdLevel = 3;      ///< 1 to 19
+    int zstdLevel = 1;      ///< 1 to 19; higher ones gain little, as the maps are predicted before
     ContentKey contentKey;  ///< kept in the header, for builds that skip what is up to date
 };
 

@@ -21,7 +21,7 @@ namespace pfvox {
 struct ProbeFrame {
     std::uint64_t offsetBytes = 0;
     std::uint32_t storedBytes = 0;
-    std::string_view codec;     ///< "raw", "zstd" or "planes"
+    std::string_view codec;     ///< "raw" or "predicted"
     std::uint64_t rawHash = 0;  ///< xxh3-64 of the words
 };
 

@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <memory>
 
 #include "io/hash.hpp"
+#include "pf_probe/predictor.hpp"
 
 namespace pfvox::probe {
 
@@ -20,17 +22,10 @@ struct FreeContext {
     void operator()(ZSTD_DCtx* context) const { ZSTD_freeDCtx(context); }
 };
 
-/// Byte b of word i -> place b * n + i.
-void splitPlanes(std::span<const std::byte> words, std::size_t wordBytes, std::span<std::byte> planes) {
-    const std::size_t count = words.size() / wordBytes;
-    for (std::size_t b = 0; b < wordBytes; ++b)
-        for (std::size_t i = 0; i < count; ++i) planes[b * count + i] = words[i * wordBytes + b];
-}
-
-void joinPlanes(std::span<const std::byte> planes, std::size_t wordBytes, std::span<std::byte> words) {
-    const std::size_t count = words.size() / wordBytes;
-    for (std::size_t b = 0; b < wordBytes; ++b)
-        for (std::size_t i = 0; i < count; ++i) words[i * wordBytes + b] = planes[b * count + i];
+/// Texels along a map of so many bytes.
+std::uint32_t edgeOf(ProbeLayer layer, std::size_t bytes) {
+    return static_cast<std::uint32_t>(
+        std::lround(std::sqrt(static_cast<double>(bytes / wordBytesOf(layer)))));
 }
 
 Result<std::vector<std::byte>> compress(std::span<const std::byte> raw, int level) {
@@ -70,14 +65,12 @@ Result<PackedBytes> packBytes(std::span<const std::byte> raw, int zstdLevel) {
 
 Result<probe_layout::Frame> packFrame(ProbeLayer layer, std::span<const std::byte> words, int zstdLevel,
                                       std::vector<std::byte>& stored) {
-    std::vector<std::byte> planes(words.size());
-    splitPlanes(words, wordBytesOf(layer), planes);
-    PFVOX_TRY(const PackedBytes, packed, packBytes(planes, zstdLevel));
-    const bool isSmaller = packed.codec == layout::Codec::Zstd;
-    const auto bytes = isSmaller ? std::span<const std::byte>(packed.bytes) : words;
+    PFVOX_TRY(const auto, packed, compress(toPlanes(layer, words, edgeOf(layer, words.size())), zstdLevel));
+    const bool isSmaller = packed.size() < words.size();
+    const auto bytes = isSmaller ? std::span<const std::byte>(packed) : words;
     stored.insert(stored.end(), bytes.begin(), bytes.end());
     return probe_layout::Frame{.storedBytes = static_cast<std::uint32_t>(bytes.size()),
-                               .codec = isSmaller ? FrameCodec::Planes : FrameCodec::Raw,
+                               .codec = isSmaller ? FrameCodec::Predicted : FrameCodec::Raw,
                                .rawHash = io::xxh3_64(words)};
 }
 
@@ -89,13 +82,11 @@ Result<void> unpackFrame(ProbeLayer layer, const probe_layout::Frame& frame,
                 return fail(ErrorCode::BadStructure, "the frame does not have the size of the map");
             std::ranges::copy(stored, words.begin());
             break;
-        case FrameCodec::Zstd:
-            PFVOX_CHECK(decompress(stored, words));
-            break;
-        case FrameCodec::Planes: {
-            std::vector<std::byte> planes(words.size());
+        case FrameCodec::Predicted: {
+            const std::uint32_t edge = edgeOf(layer, words.size());
+            std::vector<std::byte> planes(planeBytes(layer, edge));
             PFVOX_CHECK(decompress(stored, planes));
-            joinPlanes(planes, wordBytesOf(layer), words);
+            fromPlanes(layer, planes, edge, words);
             break;
         }
     }
@@ -105,7 +96,7 @@ Result<void> unpackFrame(ProbeLayer layer, const probe_layout::Frame& frame,
 }
 
 namespace {
-constexpr std::array<std::string_view, 3> kCodecNames{"raw", "zstd", "planes"};
+constexpr std::array<std::string_view, 2> kCodecNames{"raw", "predicted"};
 }
 
 std::string_view toString(FrameCodec codec) {

@@ -32,7 +32,7 @@ struct PackedBytes {
 };
 Result<PackedBytes> packBytes(std::span<const std::byte> raw, int zstdLevel);
 
-/// "raw", "zstd", "planes".
+/// "raw", "predicted".
 std::string_view toString(probe_layout::FrameCodec codec);
 /// Precondition: one of those.
 probe_layout::FrameCodec codecOf(std::string_view name);

@@ -58,8 +58,7 @@ static_assert(sizeof(Record) == 32 && offsetof(Record, hash) == 16);
 /// FRAM, one a probe and layer. The frames lie in DATA, one behind the other, in this order.
 enum class FrameCodec : std::uint32_t {
     Raw = 0,
-    Zstd = 1,
-    Planes = 2,  ///< zstd of: the first bytes of all words, the second bytes of all words, ...
+    Predicted = 1,  ///< zstd of the planes that pf_probe/predictor.hpp makes
 };
 struct Frame {
     std::uint32_t storedBytes;  ///< 0 = the probe has no such layer

@@ -182,7 +182,7 @@ Result<void> checkFrames(const ProbeResolution& resolution, const ProbeRecord& r
     for (const ProbeLayer layer : kAllLayers) {
         const Frame& frame = frames[static_cast<std::size_t>(layer)];
         const std::uint64_t rawBytes = record.isActive() ? resolution.bytesOf(layer) : 0;
-        if (frame.codec > FrameCodec::Planes) {
+        if (frame.codec > FrameCodec::Predicted) {
             return fail(ErrorCode::UnsupportedFeature, fmt::format("{}: unknown codec {}", toString(layer),
                                                                    static_cast<std::uint32_t>(frame.codec)));
         }
