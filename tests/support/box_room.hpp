@@ -23,6 +23,8 @@ class BoxRoom {
         glm::vec3 max;
     };
 
+    static constexpr float kVoxelMetres = 0.1f;  ///< all corners of boxes are multiples of it
+
     /// The standard room: 10 x 4 x 10 m with `boxes` boxes that stand or float in it.
     explicit BoxRoom(int boxes, std::uint32_t seed = 1) : size_{10, 4, 10} {
         std::mt19937 random(seed);
@@ -31,7 +33,8 @@ class BoxRoom {
             const glm::vec3 extent = 0.3f + 1.5f * glm::vec3{uniform(random), uniform(random), uniform(random)};
             glm::vec3 low = (size_ - extent) * glm::vec3{uniform(random), uniform(random), uniform(random)};
             if (i % 2 == 0) low.y = 0;
-            boxes_.push_back({low, low + extent});
+            const auto snap = [](glm::vec3 p) { return glm::round(p / kVoxelMetres) * kVoxelMetres; };
+            boxes_.push_back({snap(low), snap(low + extent)});
         }
     }
 
