@@ -39,16 +39,33 @@ std::span<const Field> fieldsOf(ProbeLayer layer) {
     return kLightFields;
 }
 
-/// What the neighbours of texel (x, y) foretell; values of a field, row by row, those before it known.
-std::uint32_t foretell(const std::vector<std::uint32_t>& values, Rule rule, std::uint32_t edge,
-                       std::size_t at) {
-    const bool hasLeft = at % edge != 0;
-    const bool hasUp = at >= edge;
-    if (rule == Rule::Plane && hasLeft && hasUp)
-        return values[at - 1] + values[at - edge] - values[at - edge - 1];
-    if (hasLeft) return values[at - 1];
-    return hasUp ? values[at - edge] : 0;
-}
+/// What neighbours foretell, row by row: only the values of the row above and of the left neighbour are kept.
+class Foreteller {
+  public:
+    Foreteller(const Field& field, std::uint32_t edge) : rule_(field.rule), above_(edge, 0) {}
+
+    /// Calls step(x, foretold) for each texel of the next row; step returns the value.
+    template <class Step>
+    void row(Step&& step) {
+        std::uint32_t upLeft = above_[0];
+        std::uint32_t left = above_[0] = step(std::size_t{0}, above_[0]);
+        if (rule_ == Rule::Left || isFirst_) {
+            for (std::size_t x = 1; x < above_.size(); ++x) left = above_[x] = step(x, left);
+        } else {
+            for (std::size_t x = 1; x < above_.size(); ++x) {
+                const std::uint32_t up = above_[x];
+                left = above_[x] = step(x, left + up - upLeft);
+                upLeft = up;
+            }
+        }
+        isFirst_ = false;
+    }
+
+  private:
+    Rule rule_;
+    bool isFirst_ = true;
+    std::vector<std::uint32_t> above_;
+};
 
 std::uint32_t zigzag(std::uint32_t difference, const Field& field) {
     const bool isNegative = (difference >> (field.bits - 1) & 1u) != 0;
@@ -83,14 +100,17 @@ std::vector<std::byte> toPlanes(ProbeLayer layer, std::span<const std::byte> wor
     const std::size_t count = std::size_t{edge} * edge;
     const std::vector<std::uint32_t> wide = wideWords(layer, words, count);
     std::vector<std::byte> planes(planeBytes(layer, edge));
-    std::vector<std::uint32_t> values(count);
     std::byte* plane = planes.data();
     for (const Field& field : fieldsOf(layer)) {
-        for (std::size_t i = 0; i < count; ++i) {
-            values[i] = wide[i] >> field.shift & field.mask();
-            const std::uint32_t code = zigzag(values[i] - foretell(values, field.rule, edge, i), field);
-            plane[i] = static_cast<std::byte>(code & 0xffu);
-            if (field.planes() == 2) plane[count + i] = static_cast<std::byte>(code >> 8);
+        Foreteller foreteller(field, edge);
+        for (std::size_t first = 0; first < count; first += edge) {
+            foreteller.row([&](std::size_t x, std::uint32_t foretold) {
+                const std::uint32_t value = wide[first + x] >> field.shift & field.mask();
+                const std::uint32_t code = zigzag(value - foretold, field);
+                plane[first + x] = static_cast<std::byte>(code & 0xffu);
+                if (field.planes() == 2) plane[count + first + x] = static_cast<std::byte>(code >> 8);
+                return value;
+            });
         }
         plane += field.planes() * count;
     }
@@ -101,15 +121,18 @@ void fromPlanes(ProbeLayer layer, std::span<const std::byte> planes, std::uint32
                 std::span<std::byte> words) {
     const std::size_t count = std::size_t{edge} * edge;
     std::vector<std::uint32_t> wide(count);
-    std::vector<std::uint32_t> values(count);
     const std::byte* plane = planes.data();
     for (const Field& field : fieldsOf(layer)) {
-        for (std::size_t i = 0; i < count; ++i) {
-            std::uint32_t code = std::to_integer<std::uint32_t>(plane[i]);
-            if (field.planes() == 2) code |= std::to_integer<std::uint32_t>(plane[count + i]) << 8;
-            values[i] =
-                (foretell(values, field.rule, edge, i) + unzigzag(code & field.mask(), field)) & field.mask();
-            wide[i] |= values[i] << field.shift;
+        Foreteller foreteller(field, edge);
+        for (std::size_t first = 0; first < count; first += edge) {
+            foreteller.row([&](std::size_t x, std::uint32_t foretold) {
+                std::uint32_t code = std::to_integer<std::uint32_t>(plane[first + x]);
+                if (field.planes() == 2)
+                    code |= std::to_integer<std::uint32_t>(plane[count + first + x]) << 8;
+                const std::uint32_t value = (foretold + unzigzag(code & field.mask(), field)) & field.mask();
+                wide[first + x] |= value << field.shift;
+                return value;
+            });
         }
         plane += field.planes() * count;
     }
@@ -117,11 +140,8 @@ void fromPlanes(ProbeLayer layer, std::span<const std::byte> planes, std::uint32
         std::memcpy(words.data(), wide.data(), words.size());
         return;
     }
-    const std::vector<std::uint16_t> narrow = [&] {
-        std::vector<std::uint16_t> result(count);
-        for (std::size_t i = 0; i < count; ++i) result[i] = static_cast<std::uint16_t>(wide[i]);
-        return result;
-    }();
+    std::vector<std::uint16_t> narrow(count);
+    for (std::size_t i = 0; i < count; ++i) narrow[i] = static_cast<std::uint16_t>(wide[i]);
     std::memcpy(words.data(), narrow.data(), words.size());
 }
 
