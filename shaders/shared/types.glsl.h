@@ -11,8 +11,10 @@
 
 namespace pfvox::shared {
 using uint = std::uint32_t;
+using vec2 = glm::vec2;
 using vec3 = glm::vec3;
 using vec4 = glm::vec4;
+using ivec2 = glm::ivec2;
 using ivec3 = glm::ivec3;
 using uvec2 = glm::uvec2;  // a 64-bit device address: x = low word
 }  // namespace pfvox::shared
@@ -21,6 +23,7 @@ using uvec2 = glm::uvec2;  // a 64-bit device address: x = low word
 #define PFVOX_SHARED_END }
 #define PFVOX_CONSTANT(type, name, value) inline constexpr type name = value
 #define PFVOX_STRUCT(name) struct alignas(16) name
+#define PFVOX_FUNCTION inline
 // Pins a struct to its bytes; a member at the wrong offset does not compile.
 #define PFVOX_SIZE(name, bytes) static_assert(sizeof(name) == (bytes))
 #define PFVOX_OFFSET(name, member, bytes) static_assert(offsetof(name, member) == (bytes))
@@ -31,6 +34,7 @@ using uvec2 = glm::uvec2;  // a 64-bit device address: x = low word
 #define PFVOX_SHARED_END
 #define PFVOX_CONSTANT(type, name, value) const type name = value
 #define PFVOX_STRUCT(name) struct name
+#define PFVOX_FUNCTION
 #define PFVOX_SIZE(name, bytes)
 #define PFVOX_OFFSET(name, member, bytes)
 

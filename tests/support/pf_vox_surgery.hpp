@@ -70,7 +70,9 @@ inline Bytes closeFile(OpenFile open) {
         part.entry.codec = layout::Codec::Raw;
         part.entry.offset = file.size();
         part.entry.storedBytes = part.entry.rawBytes = part.raw.size();
-        part.entry.rawHash = io::xxh3_64(std::as_bytes(std::span(part.raw)));
+        // The maps in DATA of a probe file have hashes of their own.
+        const bool hasHash = std::string_view(part.entry.fourcc.data(), 4) != "DATA";
+        part.entry.rawHash = hasHash ? io::xxh3_64(std::as_bytes(std::span(part.raw))) : 0;
         const auto raw = std::as_bytes(std::span(part.raw));
         file.insert(file.end(), raw.begin(), raw.end());
         std::memcpy(file.data() + sizeof open.header + i * sizeof part.entry, &part.entry, sizeof part.entry);

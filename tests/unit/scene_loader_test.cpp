@@ -54,7 +54,7 @@ metresPerVoxel = 1
     EXPECT_EQ(loaded->bounds.min, glm::dvec3(0.0));
     EXPECT_NEAR(loaded->bounds.max.x, 10.8, 1e-6);
     EXPECT_NEAR(loaded->bounds.max.y, 9.0, 1e-6);
-    EXPECT_EQ(loaded->probes.count.x, 9u);
+    EXPECT_EQ(loaded->probes.counts.x, 9u);
 }
 
 TEST_F(SceneLoader, AbsolutePathsAreTakenAsTheyAre) {
@@ -75,7 +75,7 @@ TEST_F(SceneLoader, SceneWithoutModelsLoads) {
     const auto loaded = load("");
     ASSERT_TRUE(loaded);
     EXPECT_TRUE(loaded->bounds.empty());
-    EXPECT_EQ(loaded->probes.count, glm::uvec3(1));
+    EXPECT_EQ(loaded->probes.counts, glm::uvec3(1));
 }
 
 TEST_F(SceneLoader, MissingFileHasItsPlaceInTheScene) {
@@ -147,7 +147,7 @@ TEST_F(SceneLoader, PfVoxFileStandsAtTheOriginUnderTheDefaultLight) {
     ASSERT_EQ(loaded->parts.size(), 1u);
     EXPECT_EQ(loaded->parts[0].worldFromAsset, identityAffine());
     EXPECT_NEAR(loaded->bounds.max.x, 0.8, 1e-6);
-    EXPECT_EQ(loaded->probes.count, glm::uvec3(9, 3, 3));
+    EXPECT_EQ(loaded->probes.counts, glm::uvec3(9, 3, 3));
 }
 
 TEST_F(SceneLoader, SourceInsteadOfASceneNamesTheCommand) {

@@ -162,36 +162,36 @@ const WorldBounds kBox{.min = {-2.0, 0.0, 1.0}, .max = {6.0, 3.0, 5.0}};
 
 TEST(ProbeGridFit, NothingGiven) {
     const ProbeGrid grid = fitted({}, kBox);
-    expectNear(grid.stepMetres, {1.0, 1.0, 1.0});
-    EXPECT_EQ(grid.count, glm::uvec3(9, 4, 5));
-    expectNear(grid.position, kBox.min);
+    expectNear(grid.step, {1.0, 1.0, 1.0});
+    EXPECT_EQ(grid.counts, glm::uvec3(9, 4, 5));
+    expectNear(grid.start, kBox.min);
 }
 
 TEST(ProbeGridFit, StepGivenIsCentred) {
     const ProbeGrid grid = fitted({.stepMetres = glm::dvec3(3.0, 2.0, 4.0)}, kBox);
-    EXPECT_EQ(grid.count, glm::uvec3(4, 3, 2));
-    expectNear(grid.position, {-2.5, -0.5, 1.0});
+    EXPECT_EQ(grid.counts, glm::uvec3(4, 3, 2));
+    expectNear(grid.start, {-2.5, -0.5, 1.0});
 }
 
 TEST(ProbeGridFit, PositionAndStepGiven) {
     const ProbeGrid grid =
         fitted({.position = glm::dvec3(-3.0, -1.0, 1.0), .stepMetres = glm::dvec3(1.5)}, kBox);
-    EXPECT_EQ(grid.count, glm::uvec3(7, 4, 4));
-    expectNear(grid.position, {-3.0, -1.0, 1.0});
+    EXPECT_EQ(grid.counts, glm::uvec3(7, 4, 4));
+    expectNear(grid.start, {-3.0, -1.0, 1.0});
 }
 
 TEST(ProbeGridFit, CountGiven) {
     const ProbeGrid grid = fitted({.count = glm::uvec3(5, 2, 3)}, kBox);
-    expectNear(grid.stepMetres, {2.0, 3.0, 2.0});
-    expectNear(grid.position, kBox.min);
-    EXPECT_EQ(fitted({.position = kBox.min, .count = glm::uvec3(5, 2, 3)}, kBox).stepMetres, grid.stepMetres);
+    expectNear(grid.step, {2.0, 3.0, 2.0});
+    expectNear(grid.start, kBox.min);
+    EXPECT_EQ(fitted({.position = kBox.min, .count = glm::uvec3(5, 2, 3)}, kBox).step, grid.step);
 }
 
 TEST(ProbeGridFit, EmptyAndFlatScenesHaveAGrid) {
-    EXPECT_EQ(fitted({}, {}).count, glm::uvec3(1));
+    EXPECT_EQ(fitted({}, {}).counts, glm::uvec3(1));
     const ProbeGrid flat = fitted({}, {.min = {0.0, 0.0, 0.0}, .max = {8.0, 0.0, 8.0}});
-    EXPECT_EQ(flat.count, glm::uvec3(9, 1, 9));
-    EXPECT_EQ(fitted({}, {.min = {1.0, 1.0, 1.0}, .max = {1.0, 1.0, 1.0}}).count, glm::uvec3(1));
+    EXPECT_EQ(flat.counts, glm::uvec3(9, 1, 9));
+    EXPECT_EQ(fitted({}, {.min = {1.0, 1.0, 1.0}, .max = {1.0, 1.0, 1.0}}).counts, glm::uvec3(1));
 }
 
 TEST(ProbeGridFit, GridThatDoesNotEncloseIsNotedUnlessAllOfItWasGiven) {
@@ -200,8 +200,8 @@ TEST(ProbeGridFit, GridThatDoesNotEncloseIsNotedUnlessAllOfItWasGiven) {
         .position = glm::dvec3(0.0), .stepMetres = glm::dvec3(1.0), .count = glm::uvec3(2, 2, 2)};
     const auto grid = fitProbeGrid(request, kBox, diagnostics);
     ASSERT_TRUE(grid);
-    EXPECT_EQ(grid->position, glm::dvec3(0.0));
-    EXPECT_EQ(grid->count, glm::uvec3(2));
+    EXPECT_EQ(grid->start, glm::vec3(0.0f));
+    EXPECT_EQ(grid->counts, glm::uvec3(2));
     EXPECT_THAT(diagnostics.entries(), IsEmpty());
     request.count = std::nullopt;
     ASSERT_TRUE(fitProbeGrid(request, kBox, diagnostics));

@@ -17,6 +17,7 @@
 #include <pfvox/limits.hpp>
 #include <pfvox/math.hpp>
 #include <pfvox/octree.hpp>
+#include <pfvox/probe_grid.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -139,13 +140,6 @@ struct WorldBounds {
 
 /// Box of all visible instances.
 WorldBounds boundsOf(const OctreeAsset& asset, const Affine& worldFromAsset = identityAffine());
-
-/// A probe grid with nothing left open. Probe (x, y, z) stands at position + stepMetres * (x, y, z).
-struct ProbeGrid {
-    glm::dvec3 position{0.0};
-    glm::dvec3 stepMetres{1.0};
-    glm::uvec3 count{1};
-};
 
 /// Fills what the request leaves out so that the grid encloses the box; with nothing given, the longest edge
 /// of the box has nine probes. Errors: LimitExceeded (kMaxProbesPerAxis, kMaxProbes). Diagnostics: the note

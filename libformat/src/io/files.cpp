@@ -5,56 +5,12 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <atomic>
 #include <cerrno>
-#include <cstring>
 #include <string>
-#include <system_error>
+
+#include "io/atomic_file.hpp"
 
 namespace pfvox::io {
-
-namespace {
-
-/// Owns a POSIX file descriptor.
-class Descriptor {
-  public:
-    explicit Descriptor(int fd) : fd_(fd) {}
-    Descriptor(const Descriptor&) = delete;
-    Descriptor& operator=(const Descriptor&) = delete;
-    ~Descriptor() { close(); }
-    int get() const { return fd_; }
-    bool valid() const { return fd_ >= 0; }
-    /// False when the kernel reports a delayed write error.
-    bool close() {
-        const int fd = fd_;
-        fd_ = -1;
-        return fd < 0 || ::close(fd) == 0;
-    }
-
-  private:
-    int fd_;
-};
-
-tl::unexpected<Error> systemError(ErrorCode code, const std::filesystem::path& file,
-                                  std::string_view action) {
-    const std::string reason = std::generic_category().message(errno);
-    return tl::make_unexpected(
-        Error{.code = code, .message = fmt::format("{}: {}", action, reason), .file = file});
-}
-
-bool writeAll(int fd, std::span<const std::byte> bytes) {
-    while (!bytes.empty()) {
-        const ssize_t n = ::write(fd, bytes.data(), bytes.size());
-        if (n < 0) {
-            if (errno == EINTR) continue;
-            return false;
-        }
-        bytes = bytes.subspan(static_cast<std::size_t>(n));
-    }
-    return true;
-}
-
-}  // namespace
 
 Result<FileBytes> readFile(const std::filesystem::path& file, std::uint64_t maxBytes) {
     // Without O_NONBLOCK, opening a pipe would wait for a writer, perhaps for ever.
@@ -94,39 +50,9 @@ Result<FileBytes> readFile(const std::filesystem::path& file, std::uint64_t maxB
 }
 
 Result<void> writeFileAtomically(const std::filesystem::path& file, std::span<const std::byte> bytes) {
-    if (file.has_parent_path()) {
-        std::error_code error;
-        std::filesystem::create_directories(file.parent_path(), error);
-        if (error) {
-            return tl::make_unexpected(Error{
-                .code = ErrorCode::FileNotWritable,
-                .message =
-                    fmt::format("cannot create folder {}: {}", file.parent_path().string(), error.message()),
-                .file = file});
-        }
-    }
-    if (std::error_code error; std::filesystem::is_directory(file, error)) {
-        return tl::make_unexpected(
-            Error{.code = ErrorCode::FileNotWritable, .message = "is a folder, not a file", .file = file});
-    }
-
-    static std::atomic<unsigned> serial{0};
-    std::filesystem::path temporary = file;
-    temporary += fmt::format(".tmp-{}-{}", ::getpid(), serial.fetch_add(1));
-    Descriptor fd(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
-    if (!fd.valid()) return systemError(ErrorCode::FileNotWritable, file, "cannot write");
-
-    const auto abandon = [&](std::string_view action) {
-        auto error = systemError(ErrorCode::FileNotWritable, file, action);
-        ::unlink(temporary.c_str());
-        return error;
-    };
-    if (!writeAll(fd.get(), bytes)) return abandon("cannot write");
-    if (::fsync(fd.get()) != 0) return abandon("cannot sync");
-    if (!fd.close()) return abandon("cannot close");
-    if (::rename(temporary.c_str(), file.c_str()) != 0)
-        return abandon("cannot rename the finished file into place");
-    return {};
+    PFVOX_TRY(AtomicFile, output, AtomicFile::create(file));
+    PFVOX_CHECK(output.write(bytes));
+    return output.commit();
 }
 
 }  // namespace pfvox::io

@@ -31,13 +31,13 @@ Result<ProbeGrid> fitProbeGrid(const ProbeGridRequest& request, const WorldBound
     const double longest = longestOf(high - low);
     const double fittedStep = longest > kSmallestStep * kFittedSteps ? longest / kFittedSteps : 1.0;
 
-    ProbeGrid grid;
+    glm::dvec3 step{0.0};
     glm::dvec3 wanted{0.0};
     for (int axis = 0; axis < 3; ++axis) {
-        grid.stepMetres[axis] = request.stepMetres ? (*request.stepMetres)[axis]
-                                : request.count    ? stepFor(length[axis], (*request.count)[axis], fittedStep)
-                                                   : fittedStep;
-        const double steps = std::ceil(length[axis] / grid.stepMetres[axis] - kRounding);
+        step[axis] = request.stepMetres ? (*request.stepMetres)[axis]
+                     : request.count    ? stepFor(length[axis], (*request.count)[axis], fittedStep)
+                                        : fittedStep;
+        const double steps = std::ceil(length[axis] / step[axis] - kRounding);
         wanted[axis] = request.count ? (*request.count)[axis] : std::max(steps, 0.0) + 1.0;
     }
     if (longestOf(wanted) > kMaxProbesPerAxis || wanted.x * wanted.y * wanted.z > kMaxProbes) {
@@ -47,17 +47,15 @@ Result<ProbeGrid> fitProbeGrid(const ProbeGridRequest& request, const WorldBound
                         "an axis or {} in all: raise probeGridStep",
                         wanted.x, wanted.y, wanted.z, kMaxProbesPerAxis, kMaxProbes));
     }
-    grid.count = glm::uvec3(wanted);
-    const glm::dvec3 extent = grid.stepMetres * glm::dvec3(grid.count - 1u);
-    grid.position = request.position.value_or(0.5 * (low + high - extent));
-
-    const glm::dvec3 slack = 1e-6 * grid.stepMetres;
-    const bool encloses = glm::all(glm::lessThanEqual(grid.position - slack, low)) &&
-                          glm::all(glm::greaterThanEqual(grid.position + extent + slack, high));
+    const glm::dvec3 extent = step * (wanted - 1.0);
+    const glm::dvec3 start = request.position.value_or(0.5 * (low + high - extent));
+    const glm::dvec3 slack = 1e-6 * step;
+    const bool encloses = glm::all(glm::lessThanEqual(start - slack, low)) &&
+                          glm::all(glm::greaterThanEqual(start + extent + slack, high));
     const bool asGiven = request.position && request.stepMetres && request.count;
     if (!encloses && !asGiven)
         diagnostics.note("scene-grid-smaller", "the probe grid does not enclose all models");
-    return grid;
+    return ProbeGrid{.start = start, .step = step, .counts = glm::uvec3(wanted)};
 }
 
 }  // namespace pfvox

@@ -1,0 +1,140 @@
+// Probe files read and written one probe at a time: a bake of 512 probes of 8 MB never is in memory as a
+// whole.
+//
+//     ProbeFileWriter::open -> reuse / append (any order, any thread) -> finish -> out.pf_probe
+//     ProbeFileReader::open -> readLayer / readProbe (any order, any thread)
+//     mergeProbeFields: shards -> the whole
+//
+// The writer collects finished probes in a journal beside the output, "out.pf_probe.journal". finish() copies
+// them from there, in the order of their indices, into the output, which appears complete or not at all, and
+// removes the journal: the bytes do not depend on the order in which probes came, nor on how often the bake
+// was killed and resumed. Why so: docs/decisions/011-probe-file.md.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <pfvox/pf_probe.hpp>
+
+namespace pfvox {
+
+/// Where a layer lies in its file.
+struct ProbeFrame {
+    std::uint64_t offsetBytes = 0;
+    std::uint32_t storedBytes = 0;
+    std::string_view codec;     ///< "raw" or "predicted"
+    std::uint64_t rawHash = 0;  ///< xxh3-64 of the words
+};
+
+/// Random access to a file. Opening reads and checks everything but the maps; each map is checked when it is
+/// read. All const functions may be called from several threads at once.
+class ProbeFileReader {
+  public:
+    /// Errors: FileNotFound, FileNotReadable and those of decodePfProbe, each with `file`.
+    static Result<ProbeFileReader> open(const std::filesystem::path& file, const Limits& limits,
+                                        Diagnostics& diagnostics);
+    /// `bytes` must outlive the reader.
+    static Result<ProbeFileReader> overBytes(std::span<const std::byte> bytes, const Limits& limits,
+                                             Diagnostics& diagnostics);
+    ProbeFileReader(ProbeFileReader&&) noexcept;
+    ProbeFileReader& operator=(ProbeFileReader&&) noexcept;
+    ~ProbeFileReader();
+
+    const ProbeFieldInfo& info() const;
+    ContentKey contentKey() const;
+    std::uint64_t fileBytes() const;
+    const std::optional<ProximityGrid>& proximity() const;
+
+    /// Precondition of all that follow: info().range.contains(probe).
+    const ProbeRecord& record(std::uint32_t probe) const;
+    const ContentKey& inputHash(std::uint32_t probe) const;
+    /// Where the probe stands, metres.
+    glm::vec3 positionOf(std::uint32_t probe) const;
+    /// Whether there is something to read: not for layers that the file does not have, nor for inactive
+    /// probes.
+    bool has(std::uint32_t probe, ProbeLayer layer) const;
+    /// Precondition: has(probe, layer).
+    ProbeFrame frame(std::uint32_t probe, ProbeLayer layer) const;
+
+    /// Fills `words` (info().resolution.bytesOf(layer) bytes) with a map: straight into a mapped staging
+    /// buffer, for example. Precondition: has(probe, layer). Errors: FileNotReadable, Truncated (the file
+    /// became shorter), ChecksumMismatch, BadStructure.
+    Result<void> readLayer(std::uint32_t probe, ProbeLayer layer, std::span<std::byte> words) const;
+    /// The probe with all its maps. Errors: as readLayer.
+    Result<ProbeData> readProbe(std::uint32_t probe) const;
+    /// The frame as it is stored, unchecked: for copying into another file.
+    Result<std::vector<std::byte>> readStored(std::uint32_t probe, ProbeLayer layer) const;
+
+  private:
+    struct State;
+    explicit ProbeFileReader(std::unique_ptr<State> state);
+    std::unique_ptr<State> state_;
+};
+
+/// decodePfProbe and validatePfProbe on a file; validation needs the memory of one probe only.
+Result<ProbeField> loadPfProbe(const std::filesystem::path& file, const Limits& limits,
+                               Diagnostics& diagnostics);
+std::vector<Finding> validatePfProbeFile(const std::filesystem::path& file, const Limits& limits);
+
+/// "out.pf_probe" -> "out.pf_probe.journal".
+std::filesystem::path probeJournalPath(const std::filesystem::path& output);
+
+struct ProbeWriteSettings {
+    ProbeEncodeSettings encode;
+    bool resume = false;  ///< take what a journal beside the output holds; else begin a new one
+};
+
+/// Writes a file probe by probe.
+class ProbeFileWriter {
+  public:
+    /// Begins or resumes. A journal of another grid, range, resolution or depth encoding is not used, and one
+    /// that is damaged only up to the damage; both are reported ("probe-journal-other",
+    /// "probe-journal-damaged"). Errors: those of checkProbeInfo; FileNotWritable (also while another process
+    /// writes the same journal).
+    static Result<ProbeFileWriter> open(const std::filesystem::path& output, const ProbeFieldInfo& info,
+                                        const ProbeWriteSettings& settings, Diagnostics& diagnostics);
+    ProbeFileWriter(ProbeFileWriter&&) noexcept;
+    ProbeFileWriter& operator=(ProbeFileWriter&&) noexcept;
+    /// Without finish() the journal stays, for the next run.
+    ~ProbeFileWriter();
+
+    /// True when the resumed journal has this probe, made from inputs of this hash: it then counts as
+    /// written, and need not be computed again. A zero hash is never equal.
+    bool reuse(std::uint32_t probe, const ContentKey& inputHash);
+
+    /// Compresses the maps on the calling thread and adds the probe; a second time replaces the first. When
+    /// this returns, a killed process no longer loses the probe. Thread-safe. Errors: those of
+    /// checkProbeData, FileNotWritable.
+    Result<void> append(std::uint32_t probe, const ProbeData& data);
+
+    /// Probes of the range that are neither appended nor reused, ascending.
+    std::vector<std::uint32_t> missing() const;
+    /// A probe that was appended or reused, read back. Thread-safe. Errors: BadReference, FileNotReadable,
+    /// ChecksumMismatch.
+    Result<ProbeData> readProbe(std::uint32_t probe) const;
+
+    /// Writes the output and removes the journal. Errors: BadStructure (probes are missing: they are named),
+    /// those of checkProximityGrid, FileNotWritable. After an error the journal is still there.
+    Result<void> finish(const std::optional<ProximityGrid>& proximity);
+
+  private:
+    struct State;
+    explicit ProbeFileWriter(std::unique_ptr<State> state);
+    std::unique_ptr<State> state_;
+};
+
+struct ProbeMergeSettings {
+    ContentKey contentKey;
+    std::optional<ProximityGrid> proximity;  ///< for the output; those of the inputs are dropped, but a
+                                             ///< single input's is kept when none is given here
+    bool allowPart = false;                  ///< the output may be a shard again, as long as it has no holes
+};
+
+/// Joins shards, in any order, to one file. Maps are copied as they are stored, so that the bytes are those
+/// that an unsharded bake would have written. Different devices are allowed and reported
+/// ("probe-merge-devices"). Errors: BadStructure when the shards disagree (each difference is named), or
+/// probes are missing or in two shards (they are named); those of ProbeFileReader::open; FileNotWritable.
+Result<void> mergeProbeFields(std::span<const std::filesystem::path> shards,
+                              const std::filesystem::path& output, const ProbeMergeSettings& settings,
+                              const Limits& limits, Diagnostics& diagnostics);
+
+}  // namespace pfvox

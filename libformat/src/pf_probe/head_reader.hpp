@@ -1,0 +1,29 @@
+// HeadReader: everything of a probe file but its maps, out of bytes that are not trusted.
+#pragma once
+
+#include <optional>
+#include <pfvox/error.hpp>
+#include <pfvox/limits.hpp>
+#include <vector>
+
+#include "pf_probe/byte_source.hpp"
+#include "pf_probe/records.hpp"
+
+namespace pfvox::probe {
+
+struct FileHead {
+    layout::Header header{};
+    ProbeFieldInfo info;
+    std::vector<StoredProbe> probes;          ///< probe info.range.first and those behind it
+    std::vector<std::uint64_t> frameOffsets;  ///< of each probe's first frame, in the file
+    std::optional<ProximityGrid> proximity;
+};
+
+/// Errors: BadMagic, Truncated, UnsupportedVersion, UnsupportedFeature, ChecksumMismatch, BadStructure,
+/// BadValue, BadReference, LimitExceeded; those of the source.
+Result<FileHead> readHead(const ByteSource& source, const Limits& limits, Diagnostics& diagnostics);
+
+/// "light of probe 12", for messages.
+std::string frameName(std::uint32_t probe, ProbeLayer layer);
+
+}  // namespace pfvox::probe

@@ -1,0 +1,113 @@
+// Layout of a PF_PROBE 1.0 file, byte for byte. docs/format-pf_probe.md says the same in words; change both
+// or none. Header and section table are those of PF_VOX (pf_vox/layout.hpp) with another magic.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <pfvox/pf_probe.hpp>
+
+#include "pf_vox/layout.hpp"
+
+namespace pfvox::probe_layout {
+
+/// "PFPRB", then line ends and a control character that a text-mode transfer would change.
+inline constexpr std::array<std::uint8_t, 8> kMagic{'P', 'F', 'P', 'R', 'B', '\r', '\n', 0x1a};
+inline constexpr std::array<std::uint8_t, 8> kJournalMagic{'P', 'F', 'P', 'R', 'J', '\r', '\n', 0x1a};
+
+/// INFO; the bytes of both names follow.
+struct Info {
+    std::array<float, 3> gridStart;
+    std::array<float, 3> gridStep;
+    std::array<std::uint32_t, 3> gridCounts;
+    std::uint32_t rangeFirst;
+    std::uint32_t rangeEnd;
+    std::uint32_t depthEdge;
+    std::uint32_t lightEdge;
+    std::uint32_t irradianceEdge;
+    std::uint32_t momentsEdge;
+    float depthScale;
+    float depthFarMetres;
+    std::uint32_t lightContent;
+    std::uint64_t seed;
+    std::uint32_t tracedEdge;
+    std::uint32_t minSamples;
+    std::uint32_t maxSamples;
+    std::uint32_t maxBounces;
+    float noiseTarget;
+    std::uint32_t reserved;
+    std::array<std::uint8_t, 16> sceneHash;
+    std::array<std::uint8_t, 16> shaderHash;
+    std::uint32_t deviceNameBytes;
+    std::uint32_t toolNameBytes;
+};
+static_assert(sizeof(Info) == 144 && offsetof(Info, seed) == 72 && offsetof(Info, sceneHash) == 104);
+
+/// PROB, one a probe.
+struct Record {
+    std::array<float, 3> offset;
+    std::uint8_t state;
+    std::uint8_t reserved;
+    std::uint16_t flags;
+    std::uint64_t hash;
+    float error;
+    float cappedTileShare;
+};
+static_assert(sizeof(Record) == 32 && offsetof(Record, hash) == 16);
+
+/// FRAM, one a probe and layer. The frames lie in DATA, one behind the other, in this order.
+enum class FrameCodec : std::uint32_t {
+    Raw = 0,
+    Predicted = 1,  ///< zstd of the planes that pf_probe/predictor.hpp makes
+};
+struct Frame {
+    std::uint32_t storedBytes;  ///< 0 = the probe has no such layer
+    FrameCodec codec;
+    std::uint64_t rawHash;
+};
+static_assert(sizeof(Frame) == 16);
+
+/// PROX; kProbesPerCell indices a cell of 16 or 32 bits follow, all ones = none.
+struct Proximity {
+    std::array<float, 3> start;
+    std::array<float, 3> step;
+    std::array<std::uint32_t, 3> counts;
+    std::uint32_t indexBits;
+};
+static_assert(sizeof(Proximity) == 40);
+
+/// The journal begins with this; a journal is good for a bake that would begin with the same bytes.
+struct JournalHeader {
+    std::array<std::uint8_t, 8> magic;
+    std::uint16_t versionMajor;
+    std::uint16_t versionMinor;
+    std::uint32_t endianTag;
+    std::array<float, 3> gridStart;
+    std::array<float, 3> gridStep;
+    std::array<std::uint32_t, 3> gridCounts;
+    std::uint32_t rangeFirst;
+    std::uint32_t rangeEnd;
+    std::uint32_t depthEdge;
+    std::uint32_t lightEdge;
+    std::uint32_t irradianceEdge;
+    std::uint32_t momentsEdge;
+    float depthScale;
+    float depthFarMetres;
+    std::uint32_t lightContent;
+    std::uint64_t headerHash;  ///< xxh3-64 of all before
+};
+static_assert(sizeof(JournalHeader) == 96 && offsetof(JournalHeader, headerHash) == 88);
+
+/// Before the frames of each finished probe.
+struct JournalRecord {
+    std::array<char, 4> fourcc;  ///< "DONE"
+    std::uint32_t probe;
+    std::array<std::uint8_t, 16> inputHash;
+    Record record;
+    std::array<Frame, kProbeLayerCount> frames;  ///< in the order of ProbeLayer; absent ones are zero
+    std::uint64_t payloadHash;                   ///< xxh3-64 of the stored frames that follow
+    std::uint64_t recordHash;                    ///< xxh3-64 of all before in this struct
+};
+static_assert(sizeof(JournalRecord) == 152 && offsetof(JournalRecord, recordHash) == 144);
+
+}  // namespace pfvox::probe_layout

@@ -1,0 +1,57 @@
+// The bytes of PF_PROBE 1.0. A reader must always take the file of every version; the writer of this version must make
+// the same bytes again. Where the writer changes on purpose, run with PFVOX_UPDATE_GOLDEN=1 and say why in CHANGELOG.md.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <pfvox/probe_file.hpp>
+
+#include "support/probe_fields.hpp"
+#include "support/temp_folder.hpp"
+
+namespace pfvox {
+namespace {
+
+struct Golden {
+    const char* name;
+    ProbeFieldInfo info;
+    bool withProximity;
+
+    std::filesystem::path file() const { return std::filesystem::path(PFVOX_TESTS_DIR) / "golden/data" / name; }
+    ProbeField field() const { return test::probeField(info, withProximity); }
+};
+
+void PrintTo(const Golden& golden, std::ostream* out) { *out << golden.name; }
+
+ProbeFieldInfo shardInfo() {
+    ProbeFieldInfo info = test::probeInfo({70000, 1, 1}, {0, 0, 3, 0});
+    info.range = {69996, 70000};
+    return info;
+}
+
+class PfProbeGolden : public testing::TestWithParam<Golden> {};
+
+INSTANTIATE_TEST_SUITE_P(Files, PfProbeGolden,
+                         testing::Values(Golden{"v1_0.pf_probe", test::probeInfo(), true},
+                                         Golden{"v1_0_shard.pf_probe", shardInfo(), false},
+                                         Golden{"v1_0_wide.pf_probe", shardInfo(), true}));
+
+TEST_P(PfProbeGolden, WriterMakesTheSameBytes) {
+    const ContentKey key{{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16}};
+    const auto bytes = encodePfProbe(GetParam().field(), {.contentKey = key}).value();
+    const std::string text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    if (std::getenv("PFVOX_UPDATE_GOLDEN") != nullptr) test::writeText(GetParam().file(), text);
+    EXPECT_TRUE(text == test::readText(GetParam().file()));
+}
+
+TEST_P(PfProbeGolden, ReaderTakesVersion1_0) {
+    DiagnosticList diagnostics;
+    const auto field = loadPfProbe(GetParam().file(), Limits{}, diagnostics);
+    ASSERT_TRUE(field) << describe(field.error());
+    EXPECT_EQ(*field, GetParam().field());
+    EXPECT_EQ(ProbeFileReader::open(GetParam().file(), Limits{}, diagnostics)->contentKey().hex(),
+              "0102030405060708090a0b0c0d0e0f10");
+    EXPECT_TRUE(validatePfProbeFile(GetParam().file(), Limits{}).empty());
+}
+
+}  // namespace
+}  // namespace pfvox

@@ -1,0 +1,272 @@
+// The proximity grid: what it takes for seen against rays, and what it chooses against a search over all pairs.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+#include <map>
+#include <pfvox/proximity.hpp>
+
+#include "support/box_room.hpp"
+
+namespace pfvox {
+namespace {
+
+using test::BoxRoom;
+
+/// The standard room with 32 probes, and its surfaces.
+struct Scene {
+    BoxRoom room;
+    ProbeFieldInfo info;
+    std::vector<ProbeRecord> records;
+    std::vector<SurfaceSample> samples;
+    ProximityGrid shape;
+
+    Scene(std::uint32_t edge, glm::uvec3 counts, glm::uvec3 cells, std::uint32_t seed = 1) : room(24, seed) {
+        info.grid = {.start = room.size() / (2.0f * glm::vec3{counts}), .step = room.size() / glm::vec3{counts}, .counts = counts};
+        info.resolution.depth = edge;
+        info.depth = depthEncodingFor(glm::vec3{0}, room.size());
+        records.resize(info.grid.probeCount());
+        for (std::uint32_t i = 0; i < records.size(); ++i)
+            if (room.isSolid(info.grid.pointOf(i))) records[i].state = ProbeState::Inactive;
+        // Half a millimetre of room around the walls, so that rounding leaves no sample outside.
+        shape = {.start = glm::vec3{-5e-4f}, .step = (room.size() + 1e-3f) / glm::vec3{cells}, .counts = cells, .probes = {}};
+        addSamples(seed);
+    }
+
+    /// Centres of random voxel faces that are not inside something: what a scene of voxels gives.
+    void addSamples(std::uint32_t seed) {
+        std::mt19937 random(seed);
+        std::uniform_real_distribution<float> uniform;
+        std::vector<BoxRoom::Box> solids = room.boxes();
+        solids.push_back({glm::vec3{0}, room.size()});
+        for (std::size_t b = 0; b < solids.size(); ++b) {
+            const bool isRoom = b + 1 == solids.size();
+            for (int n = 0; n < (isRoom ? 6000 : 400); ++n) {
+                const glm::vec3 extent = solids[b].max - solids[b].min;
+                glm::vec3 p = solids[b].min + extent * glm::vec3{uniform(random), uniform(random), uniform(random)};
+                p = (glm::floor(p / BoxRoom::kVoxelMetres) + 0.5f) * BoxRoom::kVoxelMetres;
+                const int axis = n % 3;
+                const bool isUpper = n / 3 % 2 == 0;
+                p[axis] = isUpper ? solids[b].max[axis] : solids[b].min[axis];
+                glm::vec3 normal{0};
+                normal[axis] = isUpper != isRoom ? 1.0f : -1.0f;
+                if (!room.isSolid(p + 2e-3f * normal)) samples.push_back({p, normal});
+            }
+        }
+    }
+
+    std::vector<std::uint32_t> mapOf(std::uint32_t probe) const {
+        return test::traceDepthNormal(room, info.grid.pointOf(probe), info.resolution.depth, DepthCoder(info.depth));
+    }
+
+    bool trulySees(std::uint32_t probe, const SurfaceSample& sample) const {
+        const glm::vec3 toPoint = sample.position - info.grid.pointOf(probe);
+        if (glm::dot(toPoint, sample.normal) >= 0) return false;
+        const float distance = glm::length(toPoint);
+        return room.trace(info.grid.pointOf(probe), toPoint / distance).distance > distance - 2e-3f;
+    }
+
+    ProximityInput input(const CellSurfaces& surfaces) const {
+        return {.info = info,
+                .records = records,
+                .depthNormal = [this](std::uint32_t probe) -> Result<std::vector<std::uint32_t>> { return mapOf(probe); },
+                .shape = shape,
+                .surfaces = surfaces};
+    }
+};
+
+/// How often one texel tells wrongly what a probe sees. What it loses lies on edges of boxes and on surfaces seen at less
+/// than six degrees, where a texel spans a quarter of a metre and more.
+TEST(Proximity, TexelsTellWhatAProbeSees) {
+    const Scene scene(1024, {4, 2, 4}, {1, 1, 1});
+    const DepthCoder coder(scene.info.depth);
+    struct Count {
+        std::uint64_t visible = 0;
+        std::uint64_t lost = 0;
+        double share() const { return static_cast<double>(lost) / static_cast<double>(visible); }
+    } all, notGrazing;
+    std::uint64_t pairs = 0;
+    std::uint64_t wrong = 0;
+    for (std::uint32_t probe = 0; probe < scene.records.size(); ++probe) {
+        if (!scene.records[probe].isActive()) continue;
+        const auto words = scene.mapOf(probe);
+        for (std::size_t i = 0; i < scene.samples.size(); i += 2) {
+            const SurfaceSample& sample = scene.samples[i];
+            const glm::vec3 toPoint = sample.position - scene.info.grid.pointOf(probe);
+            const bool sees = seesSurface(words[texelIndex(toPoint, 1024)], toPoint, sample.normal, 1024, coder);
+            ++pairs;
+            if (!scene.trulySees(probe, sample)) {
+                wrong += sees ? 1u : 0u;
+                continue;
+            }
+            const bool isGrazing = -glm::dot(toPoint, sample.normal) < 0.1f * glm::length(toPoint);
+            for (Count* count : {&all, isGrazing ? nullptr : &notGrazing}) {
+                if (count == nullptr) continue;
+                ++count->visible;
+                count->lost += sees ? 0u : 1u;
+            }
+        }
+    }
+    ASSERT_GT(notGrazing.visible, 50000u);
+    const double wrongShare = static_cast<double>(wrong) / static_cast<double>(pairs);
+    RecordProperty("lost_percent", std::to_string(100 * all.share()));
+    RecordProperty("lost_percent_not_grazing", std::to_string(100 * notGrazing.share()));
+    RecordProperty("wrong_percent", std::to_string(100 * wrongShare));
+    EXPECT_LE(notGrazing.share(), 0.005);
+    EXPECT_LE(all.share(), 0.015);
+    EXPECT_LE(wrongShare, 0.001);
+}
+
+/// The definition in pfvox/proximity.hpp, over all cells and all probes.
+ProximityGrid bruteForce(const Scene& scene, const CellSurfaces& surfaces) {
+    ProximityGrid grid = scene.shape;
+    grid.probes.assign(grid.cellCount() * kProbesPerCell, kNoProbe);
+    const DepthCoder coder(scene.info.depth);
+    const std::uint32_t edge = scene.info.resolution.depth;
+    std::vector<std::vector<std::uint32_t>> maps;
+    for (std::uint32_t p = 0; p < scene.records.size(); ++p) maps.push_back(scene.mapOf(p));
+    for (std::size_t slot = 0; slot < surfaces.cells.size(); ++slot) {
+        const std::uint32_t cell = surfaces.cells[slot];
+        const glm::vec3 low = grid.start + grid.step * glm::vec3{cell % grid.counts.x, cell / grid.counts.x % grid.counts.y,
+                                                                cell / grid.counts.x / grid.counts.y};
+        const std::size_t first = surfaces.firstOfCell[slot];
+        const std::size_t count = surfaces.firstOfCell[slot + 1] - first;
+        const std::size_t kept = std::min<std::size_t>(count, 56);
+        std::map<std::uint32_t, std::vector<bool>> seen;
+        std::map<std::uint32_t, float> texels;
+        for (std::uint32_t p = 0; p < scene.records.size(); ++p) {
+            const glm::vec3 eye = scene.info.grid.pointOf(p);
+            const glm::vec3 centre = low + 0.5f * grid.step;
+            if (!scene.records[p].isActive() || glm::distance(eye, centre) > 2 * glm::length(scene.info.grid.step)) continue;
+            std::vector<bool> bits;
+            float sum = 0;
+            const auto weigh = [&](glm::vec3 point) {
+                const float width = std::max(glm::distance(point, eye), 1e-3f) * 4.5573f / static_cast<float>(edge);
+                sum += 1 / (width * width);
+            };
+            for (std::size_t i = 0; i < kept; ++i) {
+                const SurfaceSample& s = surfaces.samples[first + i * count / kept];
+                const glm::vec3 to = s.position - eye;
+                bits.push_back(seesSurface(maps[p][texelIndex(to, edge)], to, s.normal, edge, coder));
+                if (bits.back()) weigh(s.position);
+            }
+            if (std::ranges::find(bits, true) == bits.end()) continue;
+            for (int c = 0; c < 8; ++c) {
+                const glm::vec3 corner = low + grid.step * glm::vec3{c & 1, c >> 1 & 1, c >> 2};
+                const std::uint32_t code = depthCodeOf(maps[p][texelIndex(corner - eye, edge)]);
+                bits.push_back(code == kDepthMissCode || coder.decode(code) + 0.01f >= glm::distance(corner, eye));
+                if (bits.back()) weigh(corner);
+            }
+            seen[p] = bits;
+            texels[p] = sum;
+        }
+        std::vector<bool> covered(kept + 8);
+        for (std::size_t n = 0; n < 4 && !seen.empty(); ++n) {
+            std::uint32_t best = kNoProbe;
+            std::pair<int, float> bestScore{-1, 0};
+            for (const auto& [p, bits] : seen) {
+                std::pair<int, float> score{0, texels[p]};
+                for (std::size_t i = 0; i < bits.size(); ++i) score.first += bits[i] && !covered[i] ? 1 : 0;
+                if (score > bestScore) {
+                    bestScore = score;
+                    best = p;
+                }
+            }
+            for (std::size_t i = 0; i < covered.size(); ++i) covered[i] = covered[i] || seen[best][i];
+            grid.probes[cell * kProbesPerCell + n] = best;
+            seen.erase(best);
+        }
+    }
+    return grid;
+}
+
+TEST(Proximity, ChoosesWhatASearchOverAllPairsChooses) {
+    for (const std::uint32_t seed : {1u, 2u, 3u}) {
+        const Scene scene(64, {5, 2, 4}, {9, 5, 8}, seed);
+        const CellSurfaces surfaces = sortIntoCells(scene.samples, scene.shape);
+        const auto build = buildProximityGrid(scene.input(surfaces));
+        ASSERT_TRUE(build) << describe(build.error());
+        // Sums of floats may differ in their last bit where the compiler contracts them: a handful of ties.
+        const ProximityGrid expected = bruteForce(scene, surfaces);
+        std::size_t differing = 0;
+        for (std::size_t i = 0; i < expected.probes.size(); ++i)
+            differing += expected.probes[i] != build->grid.probes[i] ? 1u : 0u;
+        EXPECT_LE(differing, expected.probes.size() / 1000);
+        for (std::size_t i = 0; i < expected.probes.size(); ++i) {
+            if (build->grid.probes[i] != kNoProbe) {
+                EXPECT_TRUE(scene.records[build->grid.probes[i]].isActive());
+            }
+        }
+    }
+}
+
+TEST(Proximity, CoversWhatCanBeSeen) {
+    const Scene scene(256, {5, 2, 5}, {20, 8, 20});
+    const CellSurfaces surfaces = sortIntoCells(scene.samples, scene.shape);
+    EXPECT_EQ(surfaces.samples.size(), scene.samples.size());
+    const auto build = buildProximityGrid(scene.input(surfaces));
+    ASSERT_TRUE(build) << describe(build.error());
+    const ProximityReport& report = build->report;
+    EXPECT_EQ(report.surfaceCells, surfaces.cells.size());
+    EXPECT_GT(report.surfaceCells, 500u);
+    EXPECT_LT(report.uncoveredCells, report.surfaceCells / 20);
+    // Of the samples that any probe within reach sees, nearly all are seen by one of the four.
+    std::uint64_t reachable = 0;
+    for (const SurfaceSample& sample : scene.samples) {
+        bool isSeen = false;
+        for (std::uint32_t p = 0; p < scene.records.size() && !isSeen; ++p)
+            isSeen = scene.records[p].isActive() && scene.trulySees(p, sample);
+        reachable += isSeen ? 1u : 0u;
+    }
+    RecordProperty("seen", static_cast<int>(report.seenSamples));
+    RecordProperty("reachable", static_cast<int>(reachable));
+    EXPECT_GT(static_cast<double>(report.seenSamples), 0.97 * static_cast<double>(reachable));
+    std::uint64_t named = 0;
+    for (const std::uint32_t probe : build->grid.probes) named += probe != kNoProbe ? 1u : 0u;
+    EXPECT_GT(named, 3 * report.surfaceCells);
+    EXPECT_EQ(buildProximityGrid(scene.input(surfaces))->grid, build->grid);
+}
+
+TEST(Proximity, WorkGrowsWithSurfaceCellsAndTheirCandidatesOnly) {
+    const Scene scene(16, {2, 2, 2}, {10, 4, 10});
+    const std::vector<SurfaceSample> few(scene.samples.begin(), scene.samples.begin() + 5);
+    CellSurfaces surfaces = sortIntoCells(few, scene.shape);
+    const auto build = buildProximityGrid(scene.input(surfaces));
+    ASSERT_TRUE(build);
+    EXPECT_LE(build->report.pairsTested, surfaces.cells.size() * scene.records.size());
+
+    // A long row of probes: only those near the cell are asked.
+    Scene row(16, {4, 2, 4}, {10, 4, 10});
+    row.info.grid = {.start = {5, 2, 5}, .step = {1, 1, 1}, .counts = {5000, 1, 1}};
+    row.records.assign(5000, ProbeRecord{});
+    int loaded = 0;
+    ProximityInput input = row.input(surfaces);
+    input.depthNormal = [&](std::uint32_t) -> Result<std::vector<std::uint32_t>> {
+        ++loaded;
+        return std::vector<std::uint32_t>(256);
+    };
+    ASSERT_TRUE(buildProximityGrid(input));
+    EXPECT_LE(loaded, 8);
+}
+
+TEST(Proximity, FailuresAreReported) {
+    const Scene scene(16, {2, 1, 2}, {4, 2, 4});
+    const CellSurfaces surfaces = sortIntoCells(scene.samples, scene.shape);
+    ProximityInput input = scene.input(surfaces);
+    input.depthNormal = [](std::uint32_t) -> Result<std::vector<std::uint32_t>> { return std::vector<std::uint32_t>(7); };
+    EXPECT_EQ(buildProximityGrid(input).error().code, ErrorCode::BadStructure);
+    input.depthNormal = [](std::uint32_t) -> Result<std::vector<std::uint32_t>> {
+        return fail(ErrorCode::ChecksumMismatch, "damaged");
+    };
+    EXPECT_EQ(buildProximityGrid(input).error().code, ErrorCode::ChecksumMismatch);
+    ProximityInput fewer = scene.input(surfaces);
+    fewer.records = fewer.records.subspan(1);
+    EXPECT_EQ(buildProximityGrid(fewer).error().code, ErrorCode::BadStructure);
+    ProbeFieldInfo compact = scene.info;
+    compact.resolution.depth = 0;
+    const ProximityInput flat{.info = compact, .records = scene.records, .depthNormal = {}, .shape = scene.shape, .surfaces = surfaces};
+    EXPECT_EQ(buildProximityGrid(flat).error().code, ErrorCode::BadStructure);
+}
+
+}  // namespace
+}  // namespace pfvox
