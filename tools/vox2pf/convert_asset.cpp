@@ -1,12 +1,11 @@
 #include "vox2pf/convert_asset.hpp"
 
 #include <fmt/format.h>
-#include <pfvox/files.hpp>
 
 #include <algorithm>
+#include <chrono>
 #include <new>
 
-#include "common/interrupt.hpp"
 #include "common/reporter.hpp"
 #include "common/text.hpp"
 
@@ -49,9 +48,25 @@ bool holdsBytes(const fs::path& output, std::span<const std::byte> bytes, const 
     return contents && std::ranges::equal(contents->bytes(), bytes);
 }
 
-/// Converts, and writes what came out. Sets report, diagnostics and outcome.
+/// Adds the time of its life to a number of seconds.
+class AddSeconds {
+  public:
+    explicit AddSeconds(double& seconds) : seconds_(seconds) {}
+    AddSeconds(const AddSeconds&) = delete;
+    AddSeconds& operator=(const AddSeconds&) = delete;
+    ~AddSeconds() {
+        seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    }
+
+  private:
+    double& seconds_;
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+/// Converts, and writes what came out. Sets report, diagnostics, outcome and output.
 Result<void> convertAndWrite(const AssetTask& task, std::span<const std::byte> source,
-                             const ConvertPolicy& policy, const Limits& limits, AssetResult& result) {
+                             const ConvertPolicy& policy, const Limits& limits, AssetResultAndOutput& asset) {
+    AssetResult& result = asset.result;
     DiagnosticList diagnostics;
     auto bytes = convertBytes(source, task.source, task.settings, limits, diagnostics, result.report);
     result.diagnostics = diagnostics.entries();
@@ -67,14 +82,17 @@ Result<void> convertAndWrite(const AssetTask& task, std::span<const std::byte> s
         result.reason = "converted again; the bytes are the same";
         return {};
     }
-    const WriteGuard guard;
-    PFVOX_CHECK(io::writeFileAtomically(task.output, *bytes));
+    const AddSeconds timer(result.report.writeSeconds);
+    WriteGuard guard;
+    PFVOX_TRY(io::PendingFile, file, io::PendingFile::write(task.output, *bytes));
+    asset.output.emplace(PendingOutput{std::move(guard), std::move(file)});
     result.outcome = Outcome::Converted;
     return {};
 }
 
 Result<void> decideAndConvert(const AssetTask& task, const ConvertPolicy& policy, const Limits& limits,
-                              AssetResult& result) {
+                              AssetResultAndOutput& asset) {
+    AssetResult& result = asset.result;
     PFVOX_TRY(const io::FileBytes, source, io::readFile(task.source, limits.maxFileBytes));
     result.report.sourceBytes = source.bytes().size();
     const Existing existing = inspectOutput(task.output, contentKey(source.bytes(), task.settings), limits);
@@ -96,7 +114,13 @@ Result<void> decideAndConvert(const AssetTask& task, const ConvertPolicy& policy
         result.outcome = Outcome::Planned;
         return {};
     }
-    return convertAndWrite(task, source.bytes(), policy, limits, result);
+    return convertAndWrite(task, source.bytes(), policy, limits, asset);
+}
+
+void failWith(const AssetTask& task, Error error, AssetResult& result) {
+    if (error.file.empty()) error.file = task.source;
+    result.outcome = Outcome::Failed;
+    result.error = std::move(error);
 }
 
 }  // namespace
@@ -119,23 +143,25 @@ std::string_view toString(Outcome outcome) {
     return "unknown";
 }
 
-AssetResult convertAsset(const AssetTask& task, const ConvertPolicy& policy, const Limits& limits) {
-    AssetResult result;
-    const auto failWith = [&](Error error) {
-        if (error.file.empty()) error.file = task.source;
-        result.outcome = Outcome::Failed;
-        result.error = std::move(error);
-    };
+AssetResultAndOutput beginAsset(const AssetTask& task, const ConvertPolicy& policy, const Limits& limits) {
+    AssetResultAndOutput asset;
     try {
-        auto status = decideAndConvert(task, policy, limits, result);
-        if (!status) failWith(std::move(status).error());
+        auto status = decideAndConvert(task, policy, limits, asset);
+        if (!status) failWith(task, std::move(status).error(), asset.result);
     } catch (const std::bad_alloc&) {
-        failWith(
-            {.code = ErrorCode::LimitExceeded, .message = "not enough memory; fewer threads (-j) may help"});
+        failWith(task,
+                 {.code = ErrorCode::LimitExceeded, .message = "not enough memory; fewer threads (-j) may help"},
+                 asset.result);
     } catch (const std::exception& exception) {
-        failWith({.code = ErrorCode::Internal, .message = exception.what()});
+        failWith(task, {.code = ErrorCode::Internal, .message = exception.what()}, asset.result);
     }
-    return result;
+    return asset;
+}
+
+void finishAsset(const AssetTask& task, PendingOutput output, AssetResult& result) {
+    const AddSeconds timer(result.report.writeSeconds);
+    auto status = output.file.commit();
+    if (!status) failWith(task, std::move(status).error(), result);
 }
 
 }  // namespace pfvox::tools

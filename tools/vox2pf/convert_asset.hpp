@@ -7,8 +7,11 @@
 #include <filesystem>
 #include <optional>
 #include <pfvox/convert.hpp>
+#include <pfvox/files.hpp>
 #include <string>
 #include <vector>
+
+#include "common/interrupt.hpp"
 
 namespace pfvox::tools {
 
@@ -47,8 +50,22 @@ struct AssetTask {
     ConvertSettings settings;
 };
 
-/// Never throws; whatever goes wrong is in the result. May be called from several threads for different
-/// outputs.
-AssetResult convertAsset(const AssetTask& task, const ConvertPolicy& policy, const Limits& limits);
+/// An output that is written but not yet in its place.
+struct PendingOutput {
+    WriteGuard guard;
+    io::PendingFile file;
+};
+
+struct AssetResultAndOutput {
+    AssetResult result;
+    std::optional<PendingOutput> output;  ///< for finishAsset; not set when there is nothing to put in place
+};
+
+/// Everything but the wait for the disk. Never throws; whatever goes wrong is in the result. May be called from several
+/// threads for different outputs.
+AssetResultAndOutput beginAsset(const AssetTask& task, const ConvertPolicy& policy, const Limits& limits);
+
+/// Puts the output in its place.
+void finishAsset(const AssetTask& task, PendingOutput output, AssetResult& result);
 
 }  // namespace pfvox::tools

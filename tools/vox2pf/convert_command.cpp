@@ -156,9 +156,11 @@ class ConvertRun {
     ExitCode run(std::vector<AssetTask> tasks) {
         tasks_ = std::move(tasks);
         results_.resize(tasks_.size());
+        outputs_.resize(tasks_.size());
         Progress progress(reporter_, tasks_.size());
         runBatch(tasks_.size(), {.threads = options_.common.threads, .failFast = options_.failFast},
                  {.work = [&](std::size_t i) { return work(i); },
+                  .commit = [&](std::size_t i) { return commit(i); },
                   .finished = [&](std::size_t i) { report(i); },
                   .progressed = [&](std::size_t i) { progress.advance(results_[i].report.voxels); }});
         reporter_.clearProgress();
@@ -176,7 +178,15 @@ class ConvertRun {
                                    .ifChanged = options_.ifChanged,
                                    .refreshTimeStamp = !options_.depfile.empty() && !options_.ifChanged,
                                    .warningsAsErrors = options_.warningsAsErrors};
-        results_[i] = convertAsset(tasks_[i], policy, limits_);
+        AssetResultAndOutput asset = beginAsset(tasks_[i], policy, limits_);
+        results_[i] = std::move(asset.result);
+        if (asset.output) outputs_[i] = std::make_unique<PendingOutput>(*std::move(asset.output));
+        return results_[i].outcome != Outcome::Failed;
+    }
+
+    bool commit(std::size_t i) {
+        if (const auto output = std::move(outputs_[i]))
+            finishAsset(tasks_[i], std::move(*output), results_[i]);
         return results_[i].outcome != Outcome::Failed;
     }
 
@@ -236,6 +246,7 @@ class ConvertRun {
     Reporter& reporter_;
     std::vector<AssetTask> tasks_;
     std::vector<AssetResult> results_;
+    std::vector<std::unique_ptr<PendingOutput>> outputs_;  ///< written, not yet in their places
 };
 
 InputQuery inputQuery(const ConvertOptions& options) {

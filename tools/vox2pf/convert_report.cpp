@@ -31,6 +31,7 @@ std::string_view words(Outcome outcome) {
 std::string contentText(const ConvertReport& report) {
     std::string text = fmt::format("{}, {}, {}", plural(report.models, "model"),
                                    plural(report.voxels, "voxel"), formatBytes(report.outputBytes));
+    if (report.hollowedVoxels > 0) text += fmt::format(", {} hollowed", formatCount(report.hollowedVoxels));
     if (report.voxels > 0) {
         text += fmt::format(" ({:.3f} bytes/voxel)",
                             static_cast<double>(report.outputBytes) / static_cast<double>(report.voxels));
@@ -87,6 +88,7 @@ Json assetJson(const AssetTask& task, const AssetResult& result) {
     json["instances"] = report.instances;
     json["materials"] = report.materials;
     json["voxels"] = report.voxels;
+    json["hollowedVoxels"] = report.hollowedVoxels;
     json["nodes"] = report.nodes;
     json["leaves"] = report.leaves;
     json["seconds"] = {{"import", report.importSeconds},

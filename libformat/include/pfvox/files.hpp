@@ -33,6 +33,30 @@ class FileBytes {
 /// Reads a whole regular file. Errors, each with `file`: FileNotFound, FileNotReadable, LimitExceeded.
 Result<FileBytes> readFile(const std::filesystem::path& file, std::uint64_t maxBytes);
 
+/// A file that was written under a temporary name in the folder of its target. In two halves, because the second one
+/// mostly waits for the disk: a tool that writes many files waits for several at once (docs/decisions/011-syncs.md).
+class PendingFile {
+  public:
+    /// Writes the temporary file. Creates missing parent folders. Errors: FileNotWritable.
+    static Result<PendingFile> write(const std::filesystem::path& file, std::span<const std::byte> bytes);
+
+    PendingFile(PendingFile&& other) noexcept;
+    PendingFile& operator=(PendingFile&&) = delete;
+    /// Removes the temporary file unless commit() has succeeded.
+    ~PendingFile();
+
+    /// Syncs the file and renames it to its target. To be called once. Errors: FileNotWritable.
+    Result<void> commit();
+
+  private:
+    PendingFile(int descriptor, std::filesystem::path file, std::filesystem::path temporary)
+        : descriptor_(descriptor), file_(std::move(file)), temporary_(std::move(temporary)) {}
+
+    int descriptor_;
+    std::filesystem::path file_;
+    std::filesystem::path temporary_;  ///< empty once there is nothing to remove
+};
+
 /// Writes to a temporary name in the same folder, syncs and renames: `file` holds either all of `bytes` or
 /// what it held before. Creates missing parent folders. Errors: FileNotWritable.
 Result<void> writeFileAtomically(const std::filesystem::path& file, std::span<const std::byte> bytes);

@@ -10,6 +10,7 @@
 #include <cstring>
 #include <string>
 #include <system_error>
+#include <utility>
 
 namespace pfvox::io {
 
@@ -21,15 +22,11 @@ class Descriptor {
     explicit Descriptor(int fd) : fd_(fd) {}
     Descriptor(const Descriptor&) = delete;
     Descriptor& operator=(const Descriptor&) = delete;
-    ~Descriptor() { close(); }
+    ~Descriptor() {
+        if (fd_ >= 0) ::close(fd_);
+    }
     int get() const { return fd_; }
     bool valid() const { return fd_ >= 0; }
-    /// False when the kernel reports a delayed write error.
-    bool close() {
-        const int fd = fd_;
-        fd_ = -1;
-        return fd < 0 || ::close(fd) == 0;
-    }
 
   private:
     int fd_;
@@ -93,7 +90,7 @@ Result<FileBytes> readFile(const std::filesystem::path& file, std::uint64_t maxB
     return contents;
 }
 
-Result<void> writeFileAtomically(const std::filesystem::path& file, std::span<const std::byte> bytes) {
+Result<PendingFile> PendingFile::write(const std::filesystem::path& file, std::span<const std::byte> bytes) {
     if (file.has_parent_path()) {
         std::error_code error;
         std::filesystem::create_directories(file.parent_path(), error);
@@ -113,20 +110,39 @@ Result<void> writeFileAtomically(const std::filesystem::path& file, std::span<co
     static std::atomic<unsigned> serial{0};
     std::filesystem::path temporary = file;
     temporary += fmt::format(".tmp-{}-{}", ::getpid(), serial.fetch_add(1));
-    Descriptor fd(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
-    if (!fd.valid()) return systemError(ErrorCode::FileNotWritable, file, "cannot write");
+    const int fd = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (fd < 0) return systemError(ErrorCode::FileNotWritable, file, "cannot write");
+    PendingFile pending(fd, file, std::move(temporary));
+    if (!writeAll(fd, bytes)) return systemError(ErrorCode::FileNotWritable, file, "cannot write");
+    return pending;
+}
 
-    const auto abandon = [&](std::string_view action) {
-        auto error = systemError(ErrorCode::FileNotWritable, file, action);
-        ::unlink(temporary.c_str());
-        return error;
+PendingFile::PendingFile(PendingFile&& other) noexcept
+    : descriptor_(std::exchange(other.descriptor_, -1)),
+      file_(std::move(other.file_)),
+      temporary_(std::exchange(other.temporary_, {})) {}
+
+PendingFile::~PendingFile() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+    if (!temporary_.empty()) ::unlink(temporary_.c_str());
+}
+
+Result<void> PendingFile::commit() {
+    const auto failed = [&](std::string_view action) {
+        return systemError(ErrorCode::FileNotWritable, file_, action);
     };
-    if (!writeAll(fd.get(), bytes)) return abandon("cannot write");
-    if (::fsync(fd.get()) != 0) return abandon("cannot sync");
-    if (!fd.close()) return abandon("cannot close");
-    if (::rename(temporary.c_str(), file.c_str()) != 0)
-        return abandon("cannot rename the finished file into place");
+    if (::fsync(descriptor_) != 0) return failed("cannot sync");
+    // The kernel may report a delayed write error only here.
+    if (::close(std::exchange(descriptor_, -1)) != 0) return failed("cannot close");
+    if (::rename(temporary_.c_str(), file_.c_str()) != 0)
+        return failed("cannot rename the finished file into place");
+    temporary_.clear();
     return {};
+}
+
+Result<void> writeFileAtomically(const std::filesystem::path& file, std::span<const std::byte> bytes) {
+    PFVOX_TRY(PendingFile, pending, PendingFile::write(file, bytes));
+    return pending.commit();
 }
 
 }  // namespace pfvox::io
