@@ -85,6 +85,14 @@ void forEachLeaf(const OctreeRegion& region, const Visit& visit) {
 
 }  // namespace
 
+void OctreeRegion::usePool(const std::shared_ptr<MemoryPool>& pool) {
+    const PoolAllocator<std::uint32_t> words(pool);
+    tree.nodes = PooledVector<std::uint32_t>(words);
+    tree.farTable = PooledVector<std::uint32_t>(words);
+    lookup = PooledVector<std::uint32_t>(words);
+    values = PooledVector<std::uint8_t>(PoolAllocator<std::uint8_t>(pool));
+}
+
 void OctreeModel::indexRegions() {
     topFirstRegion.clear();
     topFirstRegion.reserve(topTree.nodes.size());

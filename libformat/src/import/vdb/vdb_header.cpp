@@ -12,7 +12,6 @@ namespace pfvox::import::vdb {
 
 namespace {
 
-constexpr std::int64_t kMagic = 0x56444220;
 constexpr std::uint32_t kNewestVersionOfLibrary = 224;
 constexpr std::uint64_t kUuidBytes = 36;
 constexpr std::uint64_t kSmallestDescriptorBytes = 3 * 4 + 3 * 8;
@@ -158,10 +157,6 @@ Result<void> locateStreamed(Fields& fields, std::span<const std::byte> bytes, Gr
 
 std::string GridDescriptor::plainName() const {
     return uniqueName.substr(0, uniqueName.find(kSuffixSeparator));
-}
-
-bool looksLikeVdb(std::span<const std::byte> bytes) {
-    return io::ByteCursor(bytes).read<std::int64_t>().value_or(0) == kMagic;
 }
 
 Result<VdbHeader> parseVdbHeader(std::span<const std::byte> bytes, const Limits& limits,

@@ -43,8 +43,8 @@ struct VdbHeader {
 inline constexpr std::uint32_t kOldestFileVersion = 222;
 inline constexpr std::uint32_t kNewestFileVersion = 225;
 
-/// Whether the bytes begin with the magic number.
-bool looksLikeVdb(std::span<const std::byte> bytes);
+/// The first eight bytes of every VDB file.
+inline constexpr std::int64_t kMagic = 0x56444220;
 
 /// Every string, metadata value and offset up to the tree of each grid lies inside the file afterwards. Files
 /// that were written to a stream have no offsets; there the trees are walked to find the next grid (errors of
