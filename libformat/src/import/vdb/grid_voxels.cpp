@@ -221,6 +221,18 @@ class TreeWalker {
     }
 
     Result<MaterialIndex> labelMaterial(const Value& value) requires kLabelled {
+        if (lastMaterial_ && value == lastLabel_) return *lastMaterial_;
+        PFVOX_TRY(const auto, material, lookUpLabel(value));
+        lastLabel_ = value;
+        lastMaterial_ = material;
+        return material;
+    }
+
+    Result<MaterialIndex> lookUpLabel(const Value& value) requires kLabelled {
+        if (settings_.known != nullptr) {
+            const auto known = settings_.known->find(static_cast<std::int64_t>(value));
+            if (known != settings_.known->end()) return known->second;
+        }
         const std::uint32_t material = labels_.materialOf(static_cast<std::int64_t>(value));
         if (material >= settings_.maxMaterials) {
             return fail(
@@ -244,6 +256,8 @@ class TreeWalker {
     LabelTable& labels_;
     ModelBudget& budget_;
     VoxelModel& model_;
+    Value lastLabel_{};  ///< neighbours mostly have the same number
+    std::optional<MaterialIndex> lastMaterial_;
 };
 
 /// Writers often leave the class of a level set unset or call it fog. Densities are never below zero, so an
