@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 
 namespace pfvox::import::vdb {
 
@@ -62,13 +63,15 @@ bool isFloat(const GridDescriptor& grid) {
 
 /// The three float grids that give colours together, or none.
 std::vector<std::size_t> findChannels(const std::vector<GridDescriptor>& grids) {
+    std::map<std::string, std::size_t> floats;
+    for (std::size_t i = 0; i < grids.size(); ++i) {
+        if (isFloat(grids[i])) floats.emplace(lowerCase(grids[i].plainName()), i);
+    }
     const auto find = [&](const std::string& name) {
-        const auto at = std::ranges::find_if(
-            grids, [&](const GridDescriptor& g) { return isFloat(g) && lowerCase(g.plainName()) == name; });
-        return static_cast<std::size_t>(at - grids.begin());
+        const auto at = floats.find(name);
+        return at == floats.end() ? grids.size() : at->second;
     };
-    for (const GridDescriptor& grid : grids) {
-        const std::string name = lowerCase(grid.plainName());
+    for (const auto& [name, index] : floats) {
         for (const auto& [red, green, blue] : kChannelSuffixes) {
             if (!name.ends_with(red)) continue;
             const std::string base = name.substr(0, name.size() - red.size());

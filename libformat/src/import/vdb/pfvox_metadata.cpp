@@ -10,6 +10,9 @@ namespace pfvox::import::vdb {
 
 namespace {
 
+/// As many as a MaterialIndex tells apart.
+constexpr std::size_t kMaxMaterials = 65536;
+
 struct FloatField {
     std::string_view key;
     float Material::* member;
@@ -143,6 +146,9 @@ Result<MaterialTable> parseMaterialTable(std::string_view text) {
                         fmt::format("line {} of {} is no material: \"{}\"", number, metadata::kMaterials, line));
         }
         table.insert_or_assign(label, std::move(material));
+        if (table.size() > kMaxMaterials) {
+            return fail(ErrorCode::BadValue, fmt::format("{} has more than {} materials", metadata::kMaterials, kMaxMaterials));
+        }
     }
     return table;
 }

@@ -14,6 +14,8 @@ class RestoredMaterials {
     /// The table of a grid, by the index of its descriptor.
     void add(std::size_t grid, MaterialTable table) { tables_.insert_or_assign(grid, std::move(table)); }
 
+    bool contains(std::size_t grid) const { return tables_.contains(grid); }
+
     /// Appends the materials of all tables in the order of their numbers, equal ones once. Grids of several files may be
     /// in one, so that a number may mean something else in every grid.
     /// Errors: LimitExceeded (maxMaterials).

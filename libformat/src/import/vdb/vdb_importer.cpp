@@ -128,6 +128,7 @@ class VdbImport {
     Result<void> loadMaterials(const std::vector<std::size_t>& models) {
         for (const std::size_t index : models) {
             const std::size_t owner = reader_.treeOwner(index);
+            if (restored_.contains(owner)) continue;
             auto table = vdb::parseMaterialTable(reader_.grids()[owner].ownText(vdb::metadata::kMaterials));
             if (table) {
                 restored_.add(owner, *std::move(table));
