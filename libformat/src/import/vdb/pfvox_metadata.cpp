@@ -147,7 +147,8 @@ Result<MaterialTable> parseMaterialTable(std::string_view text) {
         }
         table.insert_or_assign(label, std::move(material));
         if (table.size() > kMaxMaterials) {
-            return fail(ErrorCode::BadValue, fmt::format("{} has more than {} materials", metadata::kMaterials, kMaxMaterials));
+            return fail(ErrorCode::BadValue,
+                        fmt::format("{} has more than {} materials", metadata::kMaterials, kMaxMaterials));
         }
     }
     return table;

@@ -12,6 +12,7 @@
 #include "import/importer.hpp"
 #include "import/label_materials.hpp"
 #include "import/vdb/grid_colors.hpp"
+#include "import/vdb/grid_placement.hpp"
 #include "import/vdb/grid_selection.hpp"
 #include "import/vdb/grid_voxels.hpp"
 #include "import/vdb/restored_materials.hpp"
@@ -25,38 +26,6 @@ namespace {
 
 /// Index of the material of grids that say nothing about looks.
 constexpr MaterialIndex kPlainMaterial = 0;
-
-/// OpenVDB's values sit at whole coordinates, so voxel i covers [i - 0.5, i + 0.5]; ours covers [i, i + 1].
-Affine indexFromModel(UpAxis up) {
-    Affine affine{1.0};
-    if (up == UpAxis::Z) {
-        affine[0] = {1.0, 0.0, 0.0};
-        affine[1] = {0.0, 0.0, 1.0};
-        affine[2] = {0.0, -1.0, 0.0};
-    }
-    affine[3] = glm::dvec3{-0.5};
-    return affine;
-}
-
-/// The frame of the file, z or y up, to ours.
-Affine worldFromFile(UpAxis up) {
-    Affine affine{1.0};
-    if (up == UpAxis::Z) {
-        affine[1] = {0.0, 0.0, -1.0};
-        affine[2] = {0.0, 1.0, 0.0};
-    }
-    return affine;
-}
-
-Affine fileFromIndex(const openvdb::math::Transform& transform) {
-    const openvdb::math::Mat4d matrix = transform.baseMap()->getAffineMap()->getMat4();
-    Affine affine;
-    for (int row = 0; row < 4; ++row) {
-        // OpenVDB multiplies row vectors from the left: its rows are our columns.
-        for (int column = 0; column < 3; ++column) affine[row][column] = matrix(row, column);
-    }
-    return affine;
-}
 
 class VdbImport {
   public:
@@ -245,9 +214,7 @@ class VdbImport {
                                     "to a uniform grid first",
                                     name));
         }
-        const UpAxis up = settings_.vdb.upAxis;
-        Affine affine =
-            compose(worldFromFile(up), compose(fileFromIndex(grid.transform()), indexFromModel(up)));
+        Affine affine = vdb::worldFromModel(grid.transform(), settings_.vdb.upAxis);
         const double volume = std::abs(glm::determinant(glm::dmat3{affine}));
         if (!(volume > 0.0) || !std::isfinite(volume) || !std::isfinite(glm::dot(affine[3], affine[3]))) {
             return fail(ErrorCode::BadValue, fmt::format("the transform of grid \"{}\" is singular", name));
