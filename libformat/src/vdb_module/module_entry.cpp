@@ -1,6 +1,7 @@
 // The module's side of VdbModule.
 #include <pfvox_module_id.hpp>
 
+#include "export/vdb_export.hpp"
 #include "import/vdb/vdb_import.hpp"
 #include "vdb_module/vdb_module.hpp"
 
@@ -23,7 +24,13 @@ Result<VoxelAsset> importVdb(const import::SourceBytes& source, const ImportSett
     return import::vdb::importVdb(source, settings, limits, forwarded);
 }
 
-constexpr VdbModule kModule{.buildId = PFVOX_MODULE_ID, .import = importVdb};
+Result<std::vector<std::byte>> exportAsset(const OctreeAsset& asset, const Limits& limits, ReportTo diagnostics) {
+    ForwardedDiagnostics forwarded(diagnostics);
+    return vdb_export::exportVdb(asset, limits, forwarded);
+}
+
+constexpr VdbModule kModule{
+    .buildId = PFVOX_MODULE_ID, .import = importVdb, .exportAsset = exportAsset};
 
 }  // namespace
 

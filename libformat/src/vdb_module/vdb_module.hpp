@@ -9,6 +9,8 @@
 
 #include <pfvox/error.hpp>
 #include <pfvox/limits.hpp>
+#include <pfvox/octree.hpp>
+#include <vector>
 
 #include "import/importer.hpp"
 
@@ -25,6 +27,9 @@ struct VdbModule {
     /// import::vdb::importVdb.
     Result<VoxelAsset> (*import)(const import::SourceBytes& source, const ImportSettings& settings,
                                  const Limits& limits, ReportTo diagnostics);
+    /// vdb_export::exportVdb.
+    Result<std::vector<std::byte>> (*exportAsset)(const OctreeAsset& asset, const Limits& limits,
+                                                  ReportTo diagnostics);
 };
 
 /// The only symbol of the module: `const VdbModule* pfvoxVdbModule()`.

@@ -123,7 +123,8 @@ Result<void> readGridHead(std::span<const std::byte> bytes, GridDescriptor& grid
     Fields fields(bytes.first(static_cast<std::size_t>(grid.endPos)), grid.gridPos);
     PFVOX_TRY(const auto, compression, fields.read<std::uint32_t>("grid compression"));
     grid.compression = compression;
-    PFVOX_CHECK(fields.skipMetadata("grid metadata"));
+    PFVOX_TRY(auto, own, fields.readMetadata("grid metadata"));
+    grid.own = std::move(own);
     PFVOX_TRY(auto, transform, fields.readString("grid transform"));
     grid.transformType = std::move(transform);
     for (const auto& [type, size] : kTransformBytes) {
@@ -157,6 +158,11 @@ Result<void> locateStreamed(Fields& fields, std::span<const std::byte> bytes, Gr
 
 std::string GridDescriptor::plainName() const {
     return uniqueName.substr(0, uniqueName.find(kSuffixSeparator));
+}
+
+std::string_view GridDescriptor::ownText(std::string_view key) const {
+    const auto entry = own.find(key);
+    return entry == own.end() ? std::string_view{} : std::string_view(entry->second);
 }
 
 Result<VdbHeader> parseVdbHeader(std::span<const std::byte> bytes, const Limits& limits,

@@ -13,6 +13,8 @@
 #include <string>
 #include <vector>
 
+#include "import/vdb/pfvox_metadata.hpp"
+
 namespace pfvox::import::vdb {
 
 struct GridDescriptor {
@@ -27,9 +29,12 @@ struct GridDescriptor {
     std::uint64_t gridPos = 0;  ///< compression flags, metadata, transform
     std::uint64_t treePos = 0;  ///< the tree; unset when the transform is of an unknown kind
     std::uint64_t endPos = 0;
+    OwnMetadata own;  ///< what an export of pfvox noted
 
     /// The name without the suffix that makes it unique.
     std::string plainName() const;
+    /// An entry of `own`, empty where it is absent.
+    std::string_view ownText(std::string_view key) const;
 };
 
 struct VdbHeader {

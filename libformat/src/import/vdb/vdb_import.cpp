@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <openvdb/openvdb.h>
 
+#include <algorithm>
 #include <cmath>
 #include <ios>
 #include <map>
@@ -11,8 +12,10 @@
 
 #include "import/label_materials.hpp"
 #include "import/vdb/grid_colors.hpp"
+#include "import/vdb/grid_placement.hpp"
 #include "import/vdb/grid_selection.hpp"
 #include "import/vdb/grid_voxels.hpp"
+#include "import/vdb/restored_materials.hpp"
 #include "import/vdb/vdb_header.hpp"
 #include "import/vdb/vdb_reader.hpp"
 #include "import/vdb/vdb_tree_check.hpp"
@@ -23,38 +26,6 @@ namespace {
 
 /// Index of the material of grids that say nothing about looks.
 constexpr MaterialIndex kPlainMaterial = 0;
-
-/// OpenVDB's values sit at whole coordinates, so voxel i covers [i - 0.5, i + 0.5]; ours covers [i, i + 1].
-Affine indexFromModel(UpAxis up) {
-    Affine affine{1.0};
-    if (up == UpAxis::Z) {
-        affine[0] = {1.0, 0.0, 0.0};
-        affine[1] = {0.0, 0.0, 1.0};
-        affine[2] = {0.0, -1.0, 0.0};
-    }
-    affine[3] = glm::dvec3{-0.5};
-    return affine;
-}
-
-/// The frame of the file, z or y up, to ours.
-Affine worldFromFile(UpAxis up) {
-    Affine affine{1.0};
-    if (up == UpAxis::Z) {
-        affine[1] = {0.0, 0.0, -1.0};
-        affine[2] = {0.0, 1.0, 0.0};
-    }
-    return affine;
-}
-
-Affine fileFromIndex(const openvdb::math::Transform& transform) {
-    const openvdb::math::Mat4d matrix = transform.baseMap()->getAffineMap()->getMat4();
-    Affine affine;
-    for (int row = 0; row < 4; ++row) {
-        // OpenVDB multiplies row vectors from the left: its rows are our columns.
-        for (int column = 0; column < 3; ++column) affine[row][column] = matrix(row, column);
-    }
-    return affine;
-}
 
 class VdbImport {
   public:
@@ -72,7 +43,8 @@ class VdbImport {
                   selectGrids(reader_.grids(), settings_.vdb.grids, diagnostics_));
         asset_.source.format = "vdb";
         asset_.materials.emplace_back();
-        if (selection.color) PFVOX_CHECK(loadColors(*selection.color));
+        PFVOX_CHECK(loadColors(selection.color));
+        PFVOX_CHECK(loadMaterials(selection.models));
         labels_.emplace(static_cast<MaterialIndex>(asset_.materials.size()));
         for (const std::size_t index : selection.models) PFVOX_CHECK(addInstance(index));
         for (const std::int64_t label : labels_->labels()) {
@@ -94,15 +66,61 @@ class VdbImport {
         return reader_.read(index);
     }
 
-    Result<void> loadColors(std::size_t index) {
-        PFVOX_TRY(auto, grid, read(reader_.treeOwner(index)));
+    /// The vector grid of the colours, made of three where they are so; null where they cannot be used.
+    Result<openvdb::GridBase::Ptr> readColors(const std::vector<std::size_t>& indices) {
+        openvdb::GridPtrVec grids;
+        for (const std::size_t index : indices) {
+            PFVOX_TRY(auto, grid, read(reader_.treeOwner(index)));
+            grids.push_back(std::move(grid));
+        }
+        const bool oneTransform = std::ranges::all_of(
+            grids, [&](const openvdb::GridBase::Ptr& grid) { return grid->transform() == grids[0]->transform(); });
+        if (!oneTransform) {
+            diagnostics_.warn("vdb-color-transform",
+                              fmt::format("the grids of red, green and blue (\"{}\" and its like) have different "
+                                          "transforms: colours are left out",
+                                          grids[0]->getName()));
+            return openvdb::GridBase::Ptr{};
+        }
+        openvdb::GridBase::Ptr colors = grids[0];
+        if (grids.size() == 3) {
+            const auto channel = [&](std::size_t i) { return openvdb::gridConstPtrCast<openvdb::FloatGrid>(grids[i]); };
+            colors = joinChannels(*channel(0), *channel(1), *channel(2));
+        }
+        if (colors->activeVoxelCount() != 0) return colors;
+        diagnostics_.warn("vdb-grid-empty", fmt::format("the colour grid \"{}\" is empty: colours are left out",
+                                                        colors->getName()));
+        return openvdb::GridBase::Ptr{};
+    }
+
+    /// What an export of pfvox says of its numbers.
+    Result<void> loadMaterials(const std::vector<std::size_t>& models) {
+        for (const std::size_t index : models) {
+            const std::size_t owner = reader_.treeOwner(index);
+            if (restored_.contains(owner)) continue;
+            auto table = parseMaterialTable(reader_.grids()[owner].ownText(metadata::kMaterials));
+            if (table) {
+                restored_.add(owner, *std::move(table));
+            } else {
+                diagnostics_.warn("vdb-materials-malformed",
+                                  fmt::format("grid \"{}\": {}; its materials are made up",
+                                              reader_.grids()[owner].displayName, table.error().message));
+            }
+        }
+        return restored_.appendTo(asset_.materials, limits_);
+    }
+
+    Result<void> loadColors(const std::vector<std::size_t>& indices) {
+        if (indices.empty()) return {};
+        PFVOX_TRY(auto, grid, readColors(indices));
+        if (grid == nullptr) return {};
         colorGrid_ = std::move(grid);
         colors_ = makeGridColors(colorGrid_, static_cast<MaterialIndex>(asset_.materials.size()));
         if (colors_.distinctColors > colors_.materials.size()) {
             diagnostics_.warn(
                 "vdb-colors-quantised",
                 fmt::format("{} colours of grid \"{}\" were joined to {}", colors_.distinctColors,
-                            reader_.grids()[index].displayName, colors_.materials.size()));
+                            reader_.grids()[indices[0]].displayName, colors_.materials.size()));
         }
         asset_.materials.insert(asset_.materials.end(), colors_.materials.begin(), colors_.materials.end());
         return {};
@@ -119,25 +137,39 @@ class VdbImport {
             known = modelOfGrid_.emplace(owner, model).first;
         }
         if (!known->second) return {};
-        Instance instance;
-        instance.model = *known->second;
-        instance.name = reader_.grids()[index].displayName;
-        PFVOX_TRY(const Affine, worldFromModel, place(*grid, instance.name));
-        instance.worldFromModel = worldFromModel;
+        const GridDescriptor& descriptor = reader_.grids()[index];
+        PFVOX_TRY(const Affine, worldFromModel, place(*grid, descriptor));
+        Instance instance{.model = *known->second, .worldFromModel = worldFromModel, .name = descriptor.displayName};
+        restoreInstance(descriptor, instance);
         asset_.instances.push_back(std::move(instance));
         return {};
+    }
+
+    /// Name, layer and visibility as an export of pfvox noted them.
+    void restoreInstance(const GridDescriptor& grid, Instance& instance) {
+        if (grid.ownText(metadata::kRole) != metadata::kMaterialRole) return;
+        instance.name = grid.ownText(metadata::kInstance);
+        instance.hidden = grid.ownText(metadata::kHidden) == "1" && !settings_.includeHidden;
+        if (!grid.own.contains(metadata::kLayer)) return;
+        const Layer layer{.name = std::string(grid.ownText(metadata::kLayer)),
+                          .hidden = grid.ownText(metadata::kLayerHidden) == "1" && !settings_.includeHidden};
+        const auto known = std::ranges::find(asset_.layers, layer);
+        instance.layer = static_cast<std::int32_t>(known - asset_.layers.begin());
+        if (known == asset_.layers.end()) asset_.layers.push_back(layer);
     }
 
     /// The index of the new model, or nothing when the grid has no solid voxel.
     Result<std::optional<std::uint32_t>> addModel(std::size_t owner, const openvdb::GridBase::Ptr& grid) {
         const GridDescriptor& descriptor = reader_.grids()[owner];
         VoxelModel model;
-        model.name = descriptor.displayName;
+        const bool isOwn = descriptor.ownText(metadata::kRole) == metadata::kMaterialRole;
+        model.name = isOwn ? std::string(descriptor.ownText(metadata::kModel)) : descriptor.displayName;
         FillSettings fill{.threshold = settings_.vdb.threshold,
                                .upAxis = settings_.vdb.upAxis,
                                .maxMaterials = limits_.maxMaterials,
                                .plainMaterial = kPlainMaterial,
-                               .shader = shaderFor(*grid, descriptor)};
+                               .shader = shaderFor(*grid, descriptor),
+                               .known = restored_.of(owner)};
         auto filled = fillModel(*grid, fill, *labels_, budget_, model, diagnostics_);
         if (!filled) {
             Error error = std::move(filled).error();
@@ -174,25 +206,27 @@ class VdbImport {
         if (emptyReason_.empty()) emptyReason_ = std::move(reason);
     }
 
-    Result<Affine> place(const openvdb::GridBase& grid, const std::string& name) {
+    Result<Affine> place(const openvdb::GridBase& grid, const GridDescriptor& descriptor) {
+        const std::string& name = descriptor.displayName;
         if (!grid.transform().isLinear()) {
             return fail(ErrorCode::UnsupportedFeature,
                         fmt::format("grid \"{}\" lives in a frustum, whose voxels are no cubes: resample it "
                                     "to a uniform grid first",
                                     name));
         }
-        const UpAxis up = settings_.vdb.upAxis;
-        Affine affine =
-            compose(worldFromFile(up), compose(fileFromIndex(grid.transform()), indexFromModel(up)));
+        Affine affine = worldFromModel(grid.transform(), settings_.vdb.upAxis);
         const double volume = std::abs(glm::determinant(glm::dmat3{affine}));
         if (!(volume > 0.0) || !std::isfinite(volume) || !std::isfinite(glm::dot(affine[3], affine[3]))) {
             return fail(ErrorCode::BadValue, fmt::format("the transform of grid \"{}\" is singular", name));
         }
-        const double voxelSize = std::cbrt(volume);
-        // A wish of the user corrects the unit of the file, so it scales positions as well.
-        const double unit = settings_.voxelSizeMetres ? *settings_.voxelSizeMetres / voxelSize : 1.0;
-        for (int column = 0; column < 4; ++column) affine[column] *= unit;
-        if (asset_.instances.empty()) asset_.source.voxelSizeMetres = voxelSize * unit;
+        if (asset_.instances.empty()) {
+            const auto noted = parseSize(descriptor.ownText(metadata::kVoxelSize));
+            const double voxelSize = noted.value_or(std::cbrt(volume));
+            // A wish of the user corrects the unit of the file, so it scales all positions as well.
+            if (settings_.voxelSizeMetres) unit_ = *settings_.voxelSizeMetres / voxelSize;
+            asset_.source.voxelSizeMetres = settings_.voxelSizeMetres.value_or(voxelSize);
+        }
+        for (int column = 0; column < 4; ++column) affine[column] *= unit_;
         return affine;
     }
 
@@ -205,7 +239,9 @@ class VdbImport {
     VoxelAsset asset_;
     openvdb::GridBase::Ptr colorGrid_;
     GridColors colors_;
+    RestoredMaterials restored_;
     std::optional<LabelTable> labels_;
+    double unit_ = 1.0;  ///< metres of a unit of the file
     std::map<std::size_t, std::optional<std::uint32_t>> modelOfGrid_;
     std::string emptyReason_;
 };
