@@ -14,26 +14,6 @@ namespace pfvox::viewer {
 
 namespace {
 
-/// The camera that was asked for; a scene's first one when nothing was; nothing = frame everything.
-Result<std::optional<ViewCamera>> chosenCamera(const Options& options, const Scene& scene) {
-    if (options.camera) return options.camera;
-    if (options.cameraName.empty()) {
-        const bool isScene = options.file.extension() == ".toml";
-        return isScene && !scene.cameras.empty() ? std::optional(viewCameraOf(scene.cameras.front()))
-                                                 : std::nullopt;
-    }
-    std::string names;
-    for (const Camera& camera : scene.cameras) {
-        if (camera.name == options.cameraName) return std::optional(viewCameraOf(camera));
-        if (!camera.name.empty()) names += fmt::format("{}'{}'", names.empty() ? "" : ", ", camera.name);
-    }
-    return tl::make_unexpected(
-        Error{.code = ErrorCode::BadReference,
-              .message = fmt::format("there is no camera '{}'; {}", options.cameraName,
-                                     names.empty() ? "no camera has a name" : "there is " + names),
-              .file = options.file});
-}
-
 Result<void> writeStatistics(const std::string& target, const std::string& json) {
     if (target.empty()) return {};
     if (target == "-") {
@@ -59,7 +39,7 @@ void reportFindings(const RunReport& run, const gpu::Device& device, Diagnostics
 Result<void> runHeadless(const Options& options, Diagnostics& diagnostics) {
     const auto started = std::chrono::steady_clock::now();
     PFVOX_TRY(const LoadedScene, loaded, loadScene(options.file, Limits{}, diagnostics));
-    PFVOX_TRY(const std::optional<ViewCamera>, camera, chosenCamera(options, loaded.scene));
+    PFVOX_TRY(const std::optional<ViewCamera>, camera, chosenCamera(options.camera, options.file, loaded.scene));
     PictureSettings settings = options.picture;
     settings.lighting = lightingOf(loaded.scene);
     const std::chrono::duration<double, std::milli> loadTime = std::chrono::steady_clock::now() - started;

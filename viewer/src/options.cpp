@@ -112,11 +112,12 @@ void declare(CLI::App& app, Options& options, RawOptions& raw) {
 }
 
 void understand(const RawOptions& raw, Options& options) {
-    if (!raw.size.empty()) parseSize(raw.size, options.picture);
+    options.sizeGiven = !raw.size.empty();
+    if (options.sizeGiven) parseSize(raw.size, options.picture);
     if (raw.camera.find(',') != std::string::npos) {
-        options.camera = parseCamera(raw.camera);
+        options.camera.camera = parseCamera(raw.camera);
     } else {
-        options.cameraName = raw.camera;
+        options.camera.name = raw.camera;
     }
     if (!raw.view.empty()) {
         const std::optional<ViewMode> mode = viewModeFrom(raw.view);
@@ -124,10 +125,11 @@ void understand(const RawOptions& raw, Options& options) {
         options.picture.mode = *mode;
     }
     if (options.listDevices) return;
-    if (options.file.empty()) throw CLI::ValidationError("file", "a .pf_vox file or a scene is needed");
     if (options.screenshot.empty()) {
-        throw CLI::ValidationError("--screenshot", "is needed: this version has no window yet");
+        if (!options.statisticsFile.empty()) throw CLI::ValidationError("--stats-json", "needs --screenshot");
+        return;
     }
+    if (options.file.empty()) throw CLI::ValidationError("file", "a .pf_vox file or a scene is needed");
 }
 
 }  // namespace
