@@ -16,6 +16,8 @@ struct Options {
     std::filesystem::path screenshot;
     PictureSettings picture;
     CameraRequest camera;
+    std::filesystem::path cameraPath;  ///< a flight instead of one picture; empty = none
+    std::uint32_t frames = 1;          ///< of which a picture is the mean; with cameraPath: pictures
     std::string device;                ///< gpu::DeviceOptions::selector
     std::string statisticsFile;        ///< "-" = stdout, empty = none
     bool sizeGiven = false;            ///< else the window has the size it had last

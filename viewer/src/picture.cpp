@@ -61,6 +61,15 @@ shared::ViewParameters viewParametersOf(const ViewCamera& camera, const PictureS
             .reserved2 = 0};
 }
 
+PictureStatistics& PictureStatistics::operator+=(const PictureStatistics& other) {
+    gpuMs += other.gpuMs;
+    cameraRays += other.cameraRays;
+    steps += other.steps;
+    hits += other.hits;
+    cappedRays += other.cappedRays;
+    return *this;
+}
+
 PictureStatistics statisticsOf(const shared::ViewCounters& counters, double gpuMs) {
     const auto join = [](std::uint32_t low, std::uint32_t high) { return std::uint64_t{high} << 32 | low; };
     return {.gpuMs = gpuMs,

@@ -66,6 +66,7 @@ struct PictureStatistics {
     std::uint64_t steps = 0;       ///< octree iterations of all rays, shadows counted
     std::uint64_t hits = 0;        ///< camera rays that met a voxel
     std::uint64_t cappedRays = 0;  ///< given up after too many steps: a fault of ours or of the data
+    PictureStatistics& operator+=(const PictureStatistics& other);
 };
 
 class PictureRenderer {

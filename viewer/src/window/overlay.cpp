@@ -32,6 +32,7 @@ Result<std::unique_ptr<Overlay>> Overlay::create(GlfwWindow& window, Presenter& 
 
 Result<void> Overlay::start(GlfwWindow& window, Presenter& presenter) {
     const gpu::NativeDevice& native = presenter.native();
+    device_ = vk::Device(native.device);
     try {
         const vk::DescriptorPoolSize size{.type = vk::DescriptorType::eCombinedImageSampler, .descriptorCount = 1};
         descriptors_ = vk::Device(native.device)
@@ -61,6 +62,10 @@ Result<void> Overlay::start(GlfwWindow& window, Presenter& presenter) {
 }
 
 Overlay::~Overlay() {
+    try {
+        if (device_) device_.waitIdle();  // the last frame may still use what goes now
+    } catch (const vk::Error&) {  // of a lost device: nothing is under way
+    }
     if (rendererStarted_) ImGui_ImplVulkan_Shutdown();
     if (platformStarted_) ImGui_ImplGlfw_Shutdown();
     ImGui::DestroyContext();

@@ -29,6 +29,7 @@ class Overlay {
 
     vk::UniqueDescriptorPool descriptors_;
     std::string layoutFile_;
+    vk::Device device_;
     bool platformStarted_ = false;
     bool rendererStarted_ = false;
 };

@@ -12,7 +12,7 @@ namespace pfvox::viewer {
 namespace {
 
 constexpr float kMargin = 10.0f;
-constexpr float kPanelWidth = 290.0f;
+constexpr float kPanelWidth = 320.0f;
 
 void text(const std::string& line) {
     ImGui::TextUnformatted(line.c_str(), line.c_str() + line.size());
@@ -103,7 +103,7 @@ void slider(const char* label, double& value, double low, double high, const cha
 }
 
 void drawRendering(Session& session) {
-    place({kMargin, 280.0f}, {kPanelWidth, 290.0f});
+    place({kMargin, 280.0f}, {kPanelWidth, 310.0f});
     if (ImGui::Begin("Rendering")) {
         if (ImGui::BeginCombo("view", std::string(toString(session.mode)).c_str())) {
             for (std::size_t i = 0; i < kViewModes; ++i) {
@@ -131,10 +131,14 @@ void drawStatistics(const Session& session) {
         const std::vector<float> times(session.frameTimesMs().begin(), session.frameTimesMs().end());
         if (!times.empty()) {
             const PictureStatistics& s = session.statistics();
-            const float worst = *std::max_element(times.begin(), times.end());
-            ImGui::PlotLines("##frames", times.data(), static_cast<int>(times.size()), 0, nullptr, 0.0f, worst,
+            std::vector<float> sorted = times;
+            std::sort(sorted.begin(), sorted.end());
+            const float worst = sorted.back();
+            // A single slow frame, the first above all, does not flatten the others.
+            const float top = std::min(worst, 3.0f * sorted[sorted.size() / 2]);
+            ImGui::PlotLines("##frames", times.data(), static_cast<int>(times.size()), 0, nullptr, 0.0f, top,
                              ImVec2(-1.0f, 50.0f));
-            text(fmt::format("frame on the device {:.2f} ms, worst {:.2f} ms", s.gpuMs, worst));
+            text(fmt::format("frame {:.2f} ms on the device, worst {:.1f}", s.gpuMs, worst));
             const auto rays = static_cast<double>(s.cameraRays);
             text(fmt::format("{:.2f} million camera rays/s", s.gpuMs > 0.0 ? rays / s.gpuMs * 1e-3 : 0.0));
             text(fmt::format("{:.1f} steps a camera ray", rays > 0.0 ? static_cast<double>(s.steps) / rays : 0.0));
