@@ -38,10 +38,10 @@ void CameraController::turn(glm::dvec2 parts) {
     const glm::dvec3 forward = frameOf(camera_).forward;
     const double pitch = std::asin(std::clamp(forward.y, -1.0, 1.0));
     const double yaw = std::atan2(forward.x, -forward.z);
-    // Orbiting, the scene follows the cursor: the camera goes the other way. Flying, the look follows it.
-    const double side = mode == CameraMode::Orbit ? -1.0 : 1.0;
+    // Orbiting, the scene follows the cursor, so the camera goes the other way; flying, the look follows it. Both are
+    // the same turn.
     const glm::dvec2 angles = kRadiansPerHeight * parts;
-    lookAlong(yaw + side * angles.x, std::clamp(pitch - angles.y, -kSteepest, kSteepest));
+    lookAlong(yaw + angles.x, std::clamp(pitch - angles.y, -kSteepest, kSteepest));
 }
 
 void CameraController::pan(glm::dvec2 parts) {
