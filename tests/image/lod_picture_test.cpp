@@ -12,7 +12,7 @@ VoxelAsset roomsInARow() {
     const Instance first = asset.instances.front();
     for (const double z : {-25.0, -120.0}) {
         asset.instances.push_back(first);
-        asset.instances.back().worldFromModel[3] += glm::dvec3(-0.35 * z, 0.0, z);
+        asset.instances.back().worldFromModel[3] += glm::dvec3(3.0 - 0.9 * z, -0.15 * z, z);
     }
     return asset;
 }
