@@ -28,17 +28,17 @@ class VirtualScreen {
     VirtualScreen(const std::string& xvfb, std::string xdotool, std::uint32_t width, std::uint32_t height)
         : xdotool_(std::move(xdotool)) {
         const std::string size = std::to_string(width) + "x" + std::to_string(height) + "x24";
-        // Several tests may run at once: the first display that the server can have.
-        for (int number = 90 + static_cast<int>(::getpid() % 100); number < 300 && !server_; ++number) {
-            display_ = ":" + std::to_string(number);
-            const std::filesystem::path socket = "/tmp/.X11-unix/X" + std::to_string(number);
-            if (std::filesystem::exists(socket) ||
-                std::filesystem::exists("/tmp/.X" + std::to_string(number) + "-lock"))
-                continue;
-            server_ = std::make_unique<Process>(std::vector<std::string>{
-                xvfb, display_, "-screen", "0", size, "-nolisten", "tcp", "-fbdir", folder_.path().string()});
-            for (int i = 0; i < 100 && !std::filesystem::exists(socket); ++i) pause(0.1);
-            if (std::filesystem::exists(socket)) return;
+        // The server chooses a display that is free and writes its number down.
+        const std::string number = (folder_ / "display").string();
+        server_ = std::make_unique<Process>(std::vector<std::string>{
+            "/bin/sh", "-c",
+            "exec '" + xvfb + "' -displayfd 3 -screen 0 " + size + " -nolisten tcp -fbdir '" +
+                folder_.path().string() + "' 3> '" + number + "'"});
+        for (int i = 0; i < 200 && !readText(number).ends_with('\n'); ++i) pause(0.1);
+        const std::string text = readText(number);
+        if (text.ends_with('\n')) {
+            display_ = ":" + text.substr(0, text.size() - 1);
+        } else {
             stop();
         }
     }

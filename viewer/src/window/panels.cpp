@@ -137,7 +137,7 @@ void drawStatistics(const Session& session) {
             // A single slow frame, the first above all, does not flatten the others.
             const float top = std::min(worst, 3.0f * sorted[sorted.size() / 2]);
             ImGui::PlotLines("##frames", times.data(), static_cast<int>(times.size()), 0, nullptr, 0.0f, top,
-                             ImVec2(-1.0f, 50.0f));
+                             ImVec2(ImGui::GetContentRegionAvail().x, 50.0f));
             text(fmt::format("frame {:.2f} ms on the device, worst {:.1f}", s.gpuMs, worst));
             const auto rays = static_cast<double>(s.cameraRays);
             text(fmt::format("{:.2f} million camera rays/s", s.gpuMs > 0.0 ? rays / s.gpuMs * 1e-3 : 0.0));
