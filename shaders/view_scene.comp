@@ -11,6 +11,7 @@ layout(local_size_x = kViewGroupEdge, local_size_y = kViewGroupEdge) in;
 layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer Parameters { ViewParameters view; };
 layout(buffer_reference, std430, buffer_reference_align = 16) writeonly buffer Pixels { uint rgba[]; };
 layout(buffer_reference, std430, buffer_reference_align = 16) buffer Counters { ViewCounters counters; };
+layout(buffer_reference, std430, buffer_reference_align = 16) writeonly buffer Linear { vec4 at[]; };
 layout(push_constant) uniform Push { ViewPushConstants push; };
 
 // Samples spread evenly over the pixel: the additive recurrence with the plastic number (Roberts 2018). The first lies
@@ -20,7 +21,7 @@ vec2 samplePosition(uint index) { return fract(vec2(0.5) + float(index) * vec2(0
 Ray cameraRay(ViewParameters view, uvec2 pixel, vec2 within) {
     vec2 plane = 2.0 * (vec2(pixel) + within) / vec2(view.width, view.height) - 1.0;
     vec3 direction = view.cameraForward + plane.x * view.cameraRight - plane.y * view.cameraUp;
-    return Ray(view.cameraPosition, kInfinity, normalize(direction), 0.0);
+    return Ray(view.cameraPosition, kInfinity, normalize(direction), view.cone);
 }
 
 void count(TraceStatistics statistics, uint hits, uint cappedRays, uint samples) {
@@ -41,17 +42,24 @@ void main() {
     vec3 sum = vec3(0.0);
     uint hits = 0u;
     uint cappedRays = 0u;
+    float nearest = kInfinity;
     TraceStatistics total = TraceStatistics(0u, 0u);
     for (uint i = 0u; i < view.samplesPerPixel; ++i) {
         TraceStatistics statistics = TraceStatistics(0u, 0u);
-        bool struck;
-        Ray ray = cameraRay(view, pixel, samplePosition(i));
-        sum += viewColour(view, Scene(push.scene), ray, statistics, struck);
-        hits += uint(struck);
+        float distance;
+        Ray ray = cameraRay(view, pixel, samplePosition(view.firstSample + i));
+        sum += viewColour(view, Scene(push.scene), ray, statistics, distance);
+        hits += uint(distance < kInfinity);
+        nearest = min(nearest, distance);
         cappedRays += statistics.capped;
         total.steps += statistics.steps;
     }
     count(total, hits, cappedRays, view.samplesPerPixel);
-    vec3 colour = srgbFromLinear(sum / float(view.samplesPerPixel));
-    Pixels(push.pixels).rgba[pixel.y * view.width + pixel.x] = packUnorm4x8(vec4(colour, 1.0));
+    vec3 mean = sum / float(view.samplesPerPixel);
+    uint index = pixel.y * view.width + pixel.x;
+    if ((push.linear.x | push.linear.y) != 0u) {
+        Linear(push.linear).at[index] = vec4(mean, nearest);
+    } else {
+        Pixels(push.pixels).rgba[index] = packUnorm4x8(vec4(srgbFromLinear(mean), 1.0));
+    }
 }

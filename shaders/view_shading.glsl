@@ -3,6 +3,7 @@
 #define PFVOX_VIEW_SHADING_GLSL
 
 #include "shared/view.glsl.h"
+#include "view_encoding.glsl"
 #define PFVOX_TRACE_GROUP_SIZE (kViewGroupEdge * kViewGroupEdge)
 #define PFVOX_TRACE_LOD
 #include "octree_trace.glsl"
@@ -74,18 +75,20 @@ vec3 toneMap(vec3 radiance) {
     return mix(radiance * (mapped / strongest), vec3(mapped), glare);
 }
 
-vec3 srgbFromLinear(vec3 c) {
-    c = clamp(c, vec3(0.0), vec3(1.0));
-    return mix(12.92 * c, 1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, greaterThan(c, vec3(0.0031308)));
-}
-
 // Of a colour that is meant for the screen as it is: the encoding at the end is taken back.
 vec3 linearFromDisplay(vec3 c) { return pow(c, vec3(2.2)); }
 
-// Linear display colour of one camera ray, tone mapped where it is radiance.
-vec3 viewColour(ViewParameters view, Scene scene, Ray ray, inout TraceStatistics statistics, out bool struck) {
+// Hot = one voxel, cold = 64 and more. Dark where the cell is a leaf of the file and no level of detail.
+vec3 cellColour(Surface surface) {
+    vec3 colour = heatColour(0.8 * (1.0 - float(surface.leafLog2) / 6.0));
+    return surface.lodColor != 0u ? colour : 0.3 * colour;
+}
+
+// Linear display colour of one camera ray, tone mapped where it is radiance. Its distance is kInfinity for the sky.
+vec3 viewColour(ViewParameters view, Scene scene, Ray ray, inout TraceStatistics statistics, out float distance) {
     Hit hit = traceClosest(scene, ray, statistics);
-    struck = hit.instance != kNoInstance;
+    bool struck = hit.instance != kNoInstance;
+    distance = struck ? hit.t : kInfinity;
     if (view.mode == kViewSteps) return heatColour(float(statistics.steps) / view.stepScale);
     if (!struck) {
         bool background = view.mode == kViewFinal || view.mode == kViewAlbedo;
@@ -97,6 +100,7 @@ vec3 viewColour(ViewParameters view, Scene scene, Ray ray, inout TraceStatistics
         case kViewNormals: return linearFromDisplay(0.5 + 0.5 * surface.normal);
         case kViewMaterial: return linearFromDisplay(indexColour(surface.material));
         case kViewDepth: return heatColour(1.0 - float(octreeLeafLog2(scene, hit)) / 7.0);
+        case kViewLod: return cellColour(surface) * (0.75 + 0.25 * dot(surface.normal, vec3(0.36, 0.8, 0.48)));
         default: return toneMap(view.exposure * litRadiance(view, scene, surface, statistics));
     }
 }

@@ -3,6 +3,7 @@
 #include <sys/wait.h>
 
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <pfvox/pf_vox.hpp>
@@ -58,6 +59,7 @@ class PfviewCli : public ::testing::Test {
         write(name, {reinterpret_cast<const char*>(bytes->data()), bytes->size()});
     }
     void write(const std::string& name, const std::string& content) const {
+        fs::create_directories((folder_ / name).parent_path());
         std::ofstream(folder_ / name, std::ios::binary) << content;
     }
 
@@ -98,7 +100,9 @@ TEST_F(PfviewCli, WrongUsageIsShortAndOnStderr) {
     writeRoom("a.pf_vox");
     const std::string picture = "a.pf_vox --screenshot a.png ";
     for (const std::string& arguments :
-         {std::string(), std::string("a.pf_vox"), std::string("--no-such-option"), picture + "--size 0x5",
+         {std::string("--no-such-option"), std::string("a.pf_vox --frames 2"), std::string("a.pf_vox --stats-json -"),
+          std::string("a.pf_vox --camera-path b.json"), std::string("--screenshot a.png"), picture + "--frames 0",
+          picture + "--lod-pixels -1", picture + "--size 0x5",
           picture + "--size 99999x5", picture + "--size 12", picture + "--camera 1,2,3",
           picture + "--camera 1,2,3,1,2,3", picture + "--camera 1,2,3,nan,2,3",
           picture + "--camera 1,2,3,4,5,6,180", picture + "--view nothing", picture + "--samples 0",
@@ -154,6 +158,50 @@ TEST_F(PfviewCli, BrokenSceneAndSceneOfSourcesTellWhatToDo) {
     EXPECT_EQ(broken.exitCode, 4);
     EXPECT_THAT(broken.err, HasSubstr("s.toml: line 2, column 13: direction is a list of 3 numbers"));
     EXPECT_FALSE(fs::exists(folder_ / "a.png"));
+}
+
+TEST_F(PfviewCli, FramesGiveThePictureOfAllTheirSamples) {
+    writeRoom("a.pf_vox");
+    const std::string small = "a.pf_vox --size 64x48 --validate --screenshot ";
+    EXPECT_EQ(run(small + "frames.png --samples 2 --frames 3").exitCode, 0);
+    EXPECT_EQ(run(small + "samples.png --samples 6").exitCode, 0);
+    const auto frames = viewer::readPng(folder_ / "frames.png");
+    const auto samples = viewer::readPng(folder_ / "samples.png");
+    ASSERT_TRUE(frames && samples);
+    for (std::size_t i = 0; i < frames->pixels.size(); ++i) {
+        for (int shift = 0; shift < 24; shift += 8) {
+            const auto a = static_cast<int>(frames->pixels[i] >> shift & 0xffu);
+            const auto b = static_cast<int>(samples->pixels[i] >> shift & 0xffu);
+            ASSERT_LE(std::abs(a - b), 2) << i;
+        }
+    }
+}
+
+TEST_F(PfviewCli, ACameraPathGivesNumberedPictures) {
+    writeRoom("a.pf_vox");
+    write("path.json",
+          R"({"cameras": [{"position": [3, 2, 20], "target": [3, 2, 0]}, {"position": [9, 5, 20], "target": [3, 2, 0]}]})");
+    const std::string flight = "a.pf_vox --size 32x32 --samples 1 --screenshot f.png --frames 3 --camera-path ";
+    const Outcome r = run(flight + "path.json");
+    EXPECT_EQ(r.exitCode, 0) << r.err;
+    EXPECT_EQ(run("a.pf_vox --size 32x32 --samples 1 --screenshot last.png --camera 9,5,20,3,2,0,40").exitCode, 0);
+    EXPECT_EQ(contentOf(folder_ / "f-0003.png"), contentOf(folder_ / "last.png"));
+    EXPECT_NE(contentOf(folder_ / "f-0001.png"), contentOf(folder_ / "f-0002.png"));
+    EXPECT_FALSE(fs::exists(folder_ / "f-0004.png"));
+    EXPECT_FALSE(fs::exists(folder_ / "f.png"));
+    write("broken.json", R"({"cameras": [{"position": [3, 2], "target": [3, 2, 0]}]})");
+    const Outcome broken = run(flight + "broken.json");
+    EXPECT_EQ(broken.exitCode, 4);
+    EXPECT_THAT(broken.err, HasSubstr("broken.json: camera 1: position is not three numbers"));
+    EXPECT_EQ(run(flight + "none.json").exitCode, 3);
+}
+
+TEST_F(PfviewCli, AFolderShowsItsScene) {
+    writeRoom("in/room.pf_vox");
+    write("in/s.toml", "[[models]]\npath = 'room.pf_vox'\n[[models]]\npath = 'room.pf_vox'\ntranslateVec = [8, 0, 0]\n");
+    const Outcome r = run("in --screenshot a.png --size 32x32 --samples 1 --stats-json -");
+    EXPECT_EQ(r.exitCode, 0) << r.err;
+    EXPECT_THAT(r.out, HasSubstr("\"instances\": 2,"));
 }
 
 TEST_F(PfviewCli, MissingFileUnwritablePictureAndUnknownDevice) {

@@ -11,6 +11,7 @@ struct ViewCamera {
     glm::dvec3 position{0.0, 0.0, 5.0};
     glm::dvec3 target{0.0};
     double fovYDegrees = 40.0;
+    bool operator==(const ViewCamera&) const = default;
 };
 
 /// A camera that a scene or an asset holds.

@@ -4,35 +4,18 @@
 
 #include <chrono>
 #include <cstdio>
+#include <pfvox/files.hpp>
 #include <pfvox/scene.hpp>
 
-#include "io/files.hpp"
+#include "camera_path.hpp"
+#include "frame_sequence.hpp"
+#include "open_path.hpp"
 #include "png.hpp"
 #include "report.hpp"
 
 namespace pfvox::viewer {
 
 namespace {
-
-/// The camera that was asked for; a scene's first one when nothing was; nothing = frame everything.
-Result<std::optional<ViewCamera>> chosenCamera(const Options& options, const Scene& scene) {
-    if (options.camera) return options.camera;
-    if (options.cameraName.empty()) {
-        const bool isScene = options.file.extension() == ".toml";
-        return isScene && !scene.cameras.empty() ? std::optional(viewCameraOf(scene.cameras.front()))
-                                                 : std::nullopt;
-    }
-    std::string names;
-    for (const Camera& camera : scene.cameras) {
-        if (camera.name == options.cameraName) return std::optional(viewCameraOf(camera));
-        if (!camera.name.empty()) names += fmt::format("{}'{}'", names.empty() ? "" : ", ", camera.name);
-    }
-    return tl::make_unexpected(
-        Error{.code = ErrorCode::BadReference,
-              .message = fmt::format("there is no camera '{}'; {}", options.cameraName,
-                                     names.empty() ? "no camera has a name" : "there is " + names),
-              .file = options.file});
-}
 
 Result<void> writeStatistics(const std::string& target, const std::string& json) {
     if (target.empty()) return {};
@@ -54,12 +37,73 @@ void reportFindings(const RunReport& run, const gpu::Device& device, Diagnostics
         diagnostics.warn("vulkan-validation", message);
 }
 
+/// Everything that a picture is drawn from.
+struct Stage {
+    gpu::Device& device;
+    const gpu::Scene& scene;
+    const Options& options;
+};
+
+/// The mean of several frames; statistics are those of all together.
+Result<void> drawAccumulated(const Stage& stage, RunReport& run) {
+    PFVOX_TRY(FrameSequence, frames, FrameSequence::create(stage.device));
+    for (std::uint32_t i = 0; i < stage.options.frames; ++i) {
+        PFVOX_TRY(const PictureStatistics, frame, frames.draw(stage.device, stage.scene, run.camera, run.settings));
+        run.picture += frame;
+    }
+    PFVOX_TRY(const Picture, picture, frames.picture(stage.device));
+    return writePng(stage.options.screenshot, picture);
+}
+
+/// "flight.png" -> "flight-0001.png" and so on.
+std::filesystem::path numbered(const std::filesystem::path& file, std::uint32_t number) {
+    const std::string name = fmt::format("{}-{:04}{}", file.stem().string(), number, file.extension().string());
+    return file.parent_path() / name;
+}
+
+Result<CameraPath> readCameraPath(const std::filesystem::path& file) {
+    constexpr std::uint64_t kMaxBytes = 16u << 20;
+    PFVOX_TRY(const io::FileBytes, bytes, io::readFile(file, kMaxBytes));
+    const std::span<const std::byte> b = bytes.bytes();
+    Result<CameraPath> path = CameraPath::parse({reinterpret_cast<const char*>(b.data()), b.size()});
+    if (path) return path;
+    Error error = path.error();
+    error.file = file;
+    return tl::make_unexpected(std::move(error));
+}
+
+Result<void> drawFlight(const Stage& stage, RunReport& run) {
+    PFVOX_TRY(const CameraPath, path, readCameraPath(stage.options.cameraPath));
+    PFVOX_TRY(const PictureRenderer, renderer, PictureRenderer::create(stage.device));
+    for (std::uint32_t i = 0; i < stage.options.frames; ++i) {
+        run.camera = path.atFrame(i, stage.options.frames);
+        PictureStatistics one;
+        PFVOX_TRY(const Picture, picture, renderer.render(stage.device, stage.scene, run.camera, run.settings, one));
+        run.picture += one;
+        PFVOX_CHECK(writePng(numbered(stage.options.screenshot, i + 1), picture));
+    }
+    return {};
+}
+
+Result<void> drawOne(const Stage& stage, RunReport& run) {
+    PFVOX_TRY(const PictureRenderer, renderer, PictureRenderer::create(stage.device));
+    PFVOX_TRY(const Picture, picture,
+              renderer.render(stage.device, stage.scene, run.camera, run.settings, run.picture));
+    return writePng(stage.options.screenshot, picture);
+}
+
+Result<void> draw(const Stage& stage, RunReport& run) {
+    if (!stage.options.cameraPath.empty()) return drawFlight(stage, run);
+    return stage.options.frames > 1 ? drawAccumulated(stage, run) : drawOne(stage, run);
+}
+
 }  // namespace
 
 Result<void> runHeadless(const Options& options, Diagnostics& diagnostics) {
     const auto started = std::chrono::steady_clock::now();
-    PFVOX_TRY(const LoadedScene, loaded, loadScene(options.file, Limits{}, diagnostics));
-    PFVOX_TRY(const std::optional<ViewCamera>, camera, chosenCamera(options, loaded.scene));
+    PFVOX_TRY(const OpenPath, path, openPath(options.file));
+    PFVOX_TRY(const LoadedScene, loaded, loadScene(path.file, Limits{}, diagnostics));
+    PFVOX_TRY(const std::optional<ViewCamera>, camera, chosenCamera(options.camera, path.file, loaded.scene));
     PictureSettings settings = options.picture;
     settings.lighting = lightingOf(loaded.scene);
     const std::chrono::duration<double, std::milli> loadTime = std::chrono::steady_clock::now() - started;
@@ -67,7 +111,6 @@ Result<void> runHeadless(const Options& options, Diagnostics& diagnostics) {
     PFVOX_TRY(gpu::Device, device,
               gpu::Device::open({.selector = options.device, .validation = options.validation}));
     PFVOX_TRY(const gpu::Scene, scene, gpu::Scene::build(device, gpu::partsOf(loaded), diagnostics));
-    PFVOX_TRY(const PictureRenderer, renderer, PictureRenderer::create(device));
 
     const double aspect = static_cast<double>(options.picture.width) / options.picture.height;
     RunReport run{.device = device.info(),
@@ -75,9 +118,8 @@ Result<void> runHeadless(const Options& options, Diagnostics& diagnostics) {
                   .camera = camera.value_or(cameraFraming(scene.bounds(), aspect, ViewCamera{}.fovYDegrees)),
                   .settings = settings,
                   .loadMs = loadTime.count()};
-    PFVOX_TRY(const Picture, picture, renderer.render(device, scene, run.camera, settings, run.picture));
+    PFVOX_CHECK(draw({device, scene, options}, run));
     run.memory = device.memory();
-    PFVOX_CHECK(writePng(options.screenshot, picture));
     PFVOX_CHECK(writeStatistics(options.statisticsFile, toJson(run)));
     reportFindings(run, device, diagnostics);
     if (!device.validationMessages().empty()) {

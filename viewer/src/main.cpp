@@ -5,6 +5,9 @@
 #include "headless.hpp"
 #include "options.hpp"
 #include "report.hpp"
+#ifdef PFVOX_WITH_WINDOW
+#include "window/app.hpp"
+#endif
 
 namespace {
 
@@ -31,6 +34,16 @@ Result<void> printDevices() {
     return {};
 }
 
+Result<void> run(const Options& options, Diagnostics& diagnostics) {
+    if (options.listDevices) return printDevices();
+    if (!options.screenshot.empty()) return runHeadless(options, diagnostics);
+#ifdef PFVOX_WITH_WINDOW
+    return runWindow(options, diagnostics);
+#else
+    return fail(ErrorCode::UnsupportedFeature, "this pfview was built without windows; use --screenshot");
+#endif
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -41,7 +54,7 @@ int main(int argc, char** argv) {
     }
     const Options& options = std::get<Options>(parsed);
     ConsoleDiagnostics diagnostics(options.quiet);
-    const Result<void> done = options.listDevices ? printDevices() : runHeadless(options, diagnostics);
+    const Result<void> done = run(options, diagnostics);
     if (done) return 0;
     std::fprintf(stderr, "pfview: %s\n", describe(done.error()).c_str());
     return exitCodeOf(done.error().code);

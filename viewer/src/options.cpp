@@ -15,9 +15,12 @@ constexpr int kUsageError = 2;
 constexpr std::uint32_t kMaxEdge = 16384;
 
 constexpr const char* kFooter = R"(Examples:
+  pfview hall.pf_vox
+  pfview scene.toml --camera court
   pfview hall.pf_vox --screenshot hall.png
   pfview hall.pf_vox --screenshot hall.png --size 640x480 --view normals
-  pfview scene.toml --screenshot court.png --camera court
+  pfview scene.toml --screenshot court.png --camera court --frames 16
+  pfview scene.toml --screenshot flight.png --camera-path flight.json --frames 120
   pfview hall.pf_vox --screenshot hall.png --camera 4,3,8,0,1,0,50 --stats-json -
 
 Exit codes: 0 ok, 2 usage, 3 cannot read or write, 4 invalid input, 5 unsupported feature or version, 6 GPU unavailable or
@@ -75,25 +78,41 @@ struct RawOptions {
 
 void declare(CLI::App& app, Options& options, RawOptions& raw) {
     app.set_version_flag("--version", fmt::format("pfview {}\nreads PF_VOX 1.x", PFVOX_VERSION));
-    app.add_option("file", options.file, "The .pf_vox file or scene (.toml) to look at")->type_name("FILE");
+    app.add_option("file", options.file, "The .pf_vox file, scene (.toml) or folder to look at")->type_name("FILE");
     app.footer(kFooter);
 
     CLI::Option_group* const picture = app.add_option_group("Picture");
-    picture->add_option("--screenshot", options.screenshot, "Write a PNG and exit; needs no window system")
+    picture->add_option("--screenshot", options.screenshot, "Write a PNG and exit instead of opening a window; needs no window system")
         ->type_name("PNG");
-    picture->add_option("--size", raw.size, "Pixels, default 1280x720")->type_name("WxH");
+    picture->add_option("--size", raw.size, "Pixels; default 1280x720, of a window what it was last")->type_name("WxH");
     picture
         ->add_option(
             "--camera", raw.camera,
             "Name of a camera, or px,py,pz,tx,ty,tz[,fovY] in metres and degrees; default: the scene's "
             "first camera, else frames everything")
         ->type_name("CAMERA");
-    picture->add_option("--view", raw.view, "final, albedo, normals, material, depth or steps; default final")
+    picture->add_option("--view", raw.view, "final, albedo, normals, material, depth, steps or lod; default final")
         ->type_name("MODE");
     picture
         ->add_option("--samples", options.picture.samplesPerPixel,
                      "Camera rays for each pixel, 1 to 256; default 4")
         ->check(CLI::Range(1u, 256u))
+        ->type_name("N");
+
+    picture
+        ->add_option("--frames", options.frames,
+                     "Frames of which the picture is the mean, as in the window; with --camera-path: numbered "
+                     "pictures. 1 to 100000, default 1")
+        ->check(CLI::Range(1u, 100000u))
+        ->type_name("N");
+    picture
+        ->add_option("--camera-path", options.cameraPath,
+                     "Fly through the cameras of a JSON file; writes PNG-0001.png and so on")
+        ->type_name("JSON");
+    picture
+        ->add_option("--lod-pixels", options.picture.lodPixels,
+                     "Levels of detail narrower than this stand for what is in them; 0 to 64, 0 = none, default 1")
+        ->check(CLI::Range(0.0, 64.0))
         ->type_name("N");
 
     CLI::Option_group* const device = app.add_option_group("Device");
@@ -112,11 +131,12 @@ void declare(CLI::App& app, Options& options, RawOptions& raw) {
 }
 
 void understand(const RawOptions& raw, Options& options) {
-    if (!raw.size.empty()) parseSize(raw.size, options.picture);
+    options.sizeGiven = !raw.size.empty();
+    if (options.sizeGiven) parseSize(raw.size, options.picture);
     if (raw.camera.find(',') != std::string::npos) {
-        options.camera = parseCamera(raw.camera);
+        options.camera.camera = parseCamera(raw.camera);
     } else {
-        options.cameraName = raw.camera;
+        options.camera.name = raw.camera;
     }
     if (!raw.view.empty()) {
         const std::optional<ViewMode> mode = viewModeFrom(raw.view);
@@ -124,10 +144,13 @@ void understand(const RawOptions& raw, Options& options) {
         options.picture.mode = *mode;
     }
     if (options.listDevices) return;
-    if (options.file.empty()) throw CLI::ValidationError("file", "a .pf_vox file or a scene is needed");
     if (options.screenshot.empty()) {
-        throw CLI::ValidationError("--screenshot", "is needed: this version has no window yet");
+        if (!options.statisticsFile.empty()) throw CLI::ValidationError("--stats-json", "needs --screenshot");
+        if (!options.cameraPath.empty()) throw CLI::ValidationError("--camera-path", "needs --screenshot");
+        if (options.frames != 1) throw CLI::ValidationError("--frames", "needs --screenshot");
+        return;
     }
+    if (options.file.empty()) throw CLI::ValidationError("file", "a .pf_vox file or a scene is needed");
 }
 
 }  // namespace

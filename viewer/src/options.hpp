@@ -6,7 +6,7 @@
 #include <string>
 #include <variant>
 
-#include "camera.hpp"
+#include "camera_choice.hpp"
 #include "picture.hpp"
 
 namespace pfvox::viewer {
@@ -15,10 +15,12 @@ struct Options {
     std::filesystem::path file;
     std::filesystem::path screenshot;
     PictureSettings picture;
-    std::optional<ViewCamera> camera;  ///< default: the scene's first, else frames everything
-    std::string cameraName;            ///< of the scene or file, instead of `camera`
+    CameraRequest camera;
+    std::filesystem::path cameraPath;  ///< a flight instead of one picture; empty = none
+    std::uint32_t frames = 1;          ///< of which a picture is the mean; with cameraPath: pictures
     std::string device;                ///< gpu::DeviceOptions::selector
     std::string statisticsFile;        ///< "-" = stdout, empty = none
+    bool sizeGiven = false;            ///< else the window has the size it had last
     bool listDevices = false;
     bool validation = false;
     bool quiet = false;

@@ -5,7 +5,7 @@
 #include <pfvox_shaders/shaders.hpp>
 #include <utility>
 
-#include "shared/view.glsl.h"
+#include "view_parameters.hpp"
 
 namespace pfvox::viewer {
 
@@ -23,6 +23,7 @@ constexpr std::array kModes{
     NamedMode{"material", ViewMode::Material, shared::kViewMaterial},
     NamedMode{"depth", ViewMode::Depth, shared::kViewDepth},
     NamedMode{"steps", ViewMode::Steps, shared::kViewSteps},
+    NamedMode{"lod", ViewMode::Lod, shared::kViewLod},
 };
 
 const NamedMode& entryOf(ViewMode mode) {
@@ -32,7 +33,9 @@ const NamedMode& entryOf(ViewMode mode) {
     return kModes[0];
 }
 
-shared::ViewParameters parametersOf(const ViewCamera& camera, const PictureSettings& settings) {
+}  // namespace
+
+shared::ViewParameters viewParametersOf(const ViewCamera& camera, const PictureSettings& settings) {
     constexpr float kStepsAtHotEnd = 96.0f;
     const CameraFrame frame = frameOf(camera);
     const double tanY = std::tan(glm::radians(0.5 * camera.fovYDegrees));
@@ -51,18 +54,35 @@ shared::ViewParameters parametersOf(const ViewCamera& camera, const PictureSetti
             .sunIrradiance = light.sunIrradiance,
             .stepScale = kStepsAtHotEnd,
             .skyZenith = light.skyZenith,
-            .reserved0 = 0,
+            .cone = static_cast<float>(2.0 * tanY / settings.height) * settings.lodPixels,
             .skyHorizon = light.skyHorizon,
-            .reserved1 = 0,
+            .firstSample = 0,
             .skyGround = light.skyGround,
             .reserved2 = 0};
 }
 
-std::uint64_t join(std::uint32_t low, std::uint32_t high) {
-    return std::uint64_t{high} << 32 | low;
+PictureStatistics& PictureStatistics::operator+=(const PictureStatistics& other) {
+    gpuMs += other.gpuMs;
+    cameraRays += other.cameraRays;
+    steps += other.steps;
+    hits += other.hits;
+    cappedRays += other.cappedRays;
+    return *this;
 }
 
-}  // namespace
+PictureStatistics statisticsOf(const shared::ViewCounters& counters, double gpuMs) {
+    const auto join = [](std::uint32_t low, std::uint32_t high) { return std::uint64_t{high} << 32 | low; };
+    return {.gpuMs = gpuMs,
+            .cameraRays = join(counters.raysLow, counters.raysHigh),
+            .steps = join(counters.stepsLow, counters.stepsHigh),
+            .hits = counters.primaryHits,
+            .cappedRays = counters.cappedRays};
+}
+
+glm::uvec3 groupsOf(const PictureSettings& settings) {
+    const std::uint32_t edge = shared::kViewGroupEdge;
+    return {(settings.width + edge - 1) / edge, (settings.height + edge - 1) / edge, 1};
+}
 
 Lighting lightingOf(const Scene& scene) {
     // Normalised here, in double: the length may be more than the square of a float holds.
@@ -96,7 +116,7 @@ Result<Picture> PictureRenderer::render(gpu::Device& device, const gpu::Scene& s
     Picture picture{.width = settings.width,
                     .height = settings.height,
                     .pixels = std::vector<std::uint32_t>(std::size_t{settings.width} * settings.height)};
-    const shared::ViewParameters parameters = parametersOf(camera, settings);
+    const shared::ViewParameters parameters = viewParametersOf(camera, settings);
     shared::ViewCounters counters{};
     PFVOX_TRY(const gpu::Buffer, parameterBuffer, device.createBuffer(sizeof parameters, "view parameters"));
     PFVOX_TRY(const gpu::Buffer, counterBuffer, device.createBuffer(sizeof counters, "view counters"));
@@ -107,20 +127,15 @@ Result<Picture> PictureRenderer::render(gpu::Device& device, const gpu::Scene& s
     const shared::ViewPushConstants push{.scene = scene.address(),
                                          .parameters = parameterBuffer.addressWords(),
                                          .pixels = pixelBuffer.addressWords(),
-                                         .counters = counterBuffer.addressWords()};
-    const std::uint32_t edge = shared::kViewGroupEdge;
+                                         .counters = counterBuffer.addressWords(),
+                                         .linear = {0, 0},
+                                         .reserved0 = {0, 0}};
     const gpu::Dispatch dispatch{
-        .program = &program_,
-        .pushConstants = gpu::bytesOf(push),
-        .groups = {(settings.width + edge - 1) / edge, (settings.height + edge - 1) / edge, 1}};
+        .program = &program_, .pushConstants = gpu::bytesOf(push), .groups = groupsOf(settings)};
     PFVOX_TRY(const double, gpuMs, device.run({&dispatch, 1}));
     PFVOX_CHECK(device.download(pixelBuffer, 0, std::as_writable_bytes(std::span(picture.pixels))));
     PFVOX_CHECK(device.download(counterBuffer, 0, std::as_writable_bytes(std::span(&counters, 1))));
-    statistics = {.gpuMs = gpuMs,
-                  .cameraRays = join(counters.raysLow, counters.raysHigh),
-                  .steps = join(counters.stepsLow, counters.stepsHigh),
-                  .hits = counters.primaryHits,
-                  .cappedRays = counters.cappedRays};
+    statistics = statisticsOf(counters, gpuMs);
     return picture;
 }
 

@@ -23,7 +23,7 @@ struct Picture {
     std::vector<std::uint32_t> pixels;  ///< bytes R, G, B, A in memory
 };
 
-/// What the colours show. The spellings are "final", "albedo", "normals", "material", "depth" and "steps".
+/// What the colours show. The spellings are "final", "albedo", "normals", "material", "depth", "steps" and "lod".
 enum class ViewMode : std::uint8_t {
     Final,     ///< sun with shadow, sky, emission
     Albedo,    ///< base colour
@@ -31,7 +31,9 @@ enum class ViewMode : std::uint8_t {
     Material,  ///< a colour for each material index
     Depth,     ///< edge of the leaf in the octree: hot = one voxel, cold = 64 and more
     Steps,     ///< iterations of the traversal: cold = few
+    Lod,       ///< edge of the cell that was hit: hot = one voxel; dark where it is no level of detail
 };
+inline constexpr std::size_t kViewModes = 7;
 std::optional<ViewMode> viewModeFrom(std::string_view name);
 std::string_view toString(ViewMode mode);
 
@@ -43,6 +45,7 @@ struct Lighting {
     glm::vec3 skyHorizon{0.72f, 0.80f, 0.88f};
     glm::vec3 skyGround{0.24f, 0.23f, 0.22f};
     float exposure = 1.0f;
+    bool operator==(const Lighting&) const = default;
 };
 Lighting lightingOf(const Scene& scene);
 
@@ -51,7 +54,10 @@ struct PictureSettings {
     std::uint32_t height = 720;
     std::uint32_t samplesPerPixel = 4;
     ViewMode mode = ViewMode::Final;
+    /// Levels of detail that are narrower than this many pixels stand for what is in them; 0 = not used.
+    float lodPixels = 1.0f;
     Lighting lighting;
+    bool operator==(const PictureSettings&) const = default;
 };
 
 struct PictureStatistics {
@@ -60,6 +66,7 @@ struct PictureStatistics {
     std::uint64_t steps = 0;       ///< octree iterations of all rays, shadows counted
     std::uint64_t hits = 0;        ///< camera rays that met a voxel
     std::uint64_t cappedRays = 0;  ///< given up after too many steps: a fault of ours or of the data
+    PictureStatistics& operator+=(const PictureStatistics& other);
 };
 
 class PictureRenderer {

@@ -37,6 +37,7 @@ Json pictureJson(const PictureSettings& settings, const PictureStatistics& pictu
     return {{"width", settings.width},
             {"height", settings.height},
             {"samplesPerPixel", settings.samplesPerPixel},
+            {"lodPixels", settings.lodPixels},
             {"view", std::string(toString(settings.mode))},
             {"gpuMs", picture.gpuMs},
             {"cameraRays", picture.cameraRays},

@@ -14,6 +14,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <glm/glm.hpp>
 #include <memory>
 #include <pfvox/error.hpp>
@@ -22,6 +23,8 @@
 #include <string_view>
 #include <vector>
 
+struct VkBuffer_T;
+
 namespace pfvox::gpu {
 
 namespace detail {
@@ -29,6 +32,9 @@ class DeviceContext;
 struct BufferState;
 struct ProgramState;
 }  // namespace detail
+
+struct NativeDevice;
+struct NativeQueueFamily;
 
 enum class DeviceKind : std::uint8_t { Discrete, Integrated, Virtual, Other, Software };
 
@@ -57,6 +63,11 @@ struct DeviceOptions {
     std::string selector;
     /// Turns VK_LAYER_KHRONOS_validation on; its messages are collected, see Device::validationMessages().
     bool validation = false;
+    /// Further extensions for whoever shares the device (pfvox/gpu_native.hpp). A device without them is not usable.
+    std::vector<std::string> instanceExtensions = {};
+    std::vector<std::string> deviceExtensions = {};
+    /// When set, the queue draws as well as computes and is one for which this is true.
+    std::function<bool(const NativeQueueFamily&)> queueFits = {};
 };
 
 /// Device memory reached by address. Its first content is unspecified.
@@ -76,6 +87,7 @@ class Buffer {
 
   private:
     friend class Device;
+    friend VkBuffer_T* nativeOf(const Buffer& buffer);
     explicit Buffer(std::unique_ptr<detail::BufferState> state);
     std::unique_ptr<detail::BufferState> state_;
 };
@@ -154,6 +166,7 @@ class Device {
     std::vector<std::string> validationMessages() const;
 
   private:
+    friend NativeDevice nativeOf(const Device& device);
     explicit Device(std::shared_ptr<detail::DeviceContext> context);
     std::shared_ptr<detail::DeviceContext> context_;
 };

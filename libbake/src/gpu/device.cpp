@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <pfvox/assert.hpp>
 #include <pfvox/gpu.hpp>
+#include <pfvox/gpu_native.hpp>
 
 #include "gpu/device_context.hpp"
 
@@ -34,8 +35,8 @@ Device::~Device() = default;
 // --- Devices ---
 
 Result<std::vector<DeviceInfo>> listDevices() {
-    PFVOX_TRY(const detail::Instance, instance, detail::createInstance(false));
-    PFVOX_TRY(const std::vector<detail::FoundDevice>, found, detail::findDevices(instance));
+    PFVOX_TRY(const detail::Instance, instance, detail::createInstance({}));
+    PFVOX_TRY(const std::vector<detail::FoundDevice>, found, detail::findDevices(instance, {}));
     std::vector<DeviceInfo> devices;
     for (const detail::FoundDevice& device : found) devices.push_back(device.info);
     return devices;
@@ -57,6 +58,13 @@ std::uint64_t Device::maxBufferBytes() const {
 }
 std::vector<std::string> Device::validationMessages() const {
     return context_->validationMessages();
+}
+
+NativeDevice nativeOf(const Device& device) {
+    return device.context_->native();
+}
+VkBuffer_T* nativeOf(const Buffer& buffer) {
+    return static_cast<VkBuffer>(*buffer.state_->allocation.buffer);
 }
 
 // --- Buffers ---

@@ -35,17 +35,17 @@ BufferState::~BufferState() {
 }
 
 Result<std::shared_ptr<DeviceContext>> DeviceContext::open(const DeviceOptions& options) {
-    PFVOX_TRY(Instance, instance, createInstance(options.validation));
-    PFVOX_TRY(std::vector<FoundDevice>, devices, findDevices(instance));
+    PFVOX_TRY(Instance, instance, createInstance(options));
+    PFVOX_TRY(std::vector<FoundDevice>, devices, findDevices(instance, options));
     PFVOX_TRY(const std::size_t, chosen, selectDevice(devices, options.selector));
     return guarded("cannot open device '" + devices[chosen].info.name + "'", [&] {
-        return std::make_shared<DeviceContext>(std::move(instance), std::move(devices[chosen]));
+        return std::make_shared<DeviceContext>(std::move(instance), std::move(devices[chosen]), options);
     });
 }
 
-DeviceContext::DeviceContext(Instance instance, FoundDevice found)
+DeviceContext::DeviceContext(Instance instance, FoundDevice found, const DeviceOptions& options)
     : instance_(std::move(instance)), found_(std::move(found)), staging_(stagingServices()) {
-    createDevice();
+    createDevice(options.deviceExtensions);
     queue_ = device_.getQueue(found_.queueFamily, 0);
     commandPool_ =
         vk::raii::CommandPool(device_, {.flags = vk::CommandPoolCreateFlagBits::eResetCommandBuffer,
@@ -69,14 +69,24 @@ DeviceContext::~DeviceContext() {
     }
 }
 
-void DeviceContext::createDevice() {
+void DeviceContext::createDevice(const std::vector<std::string>& extensions) {
     const float priority = 1.0f;
     const vk::DeviceQueueCreateInfo queue{
         .queueFamilyIndex = found_.queueFamily, .queueCount = 1, .pQueuePriorities = &priority};
     const vk::PhysicalDeviceVulkan12Features features{.timelineSemaphore = true, .bufferDeviceAddress = true};
+    const std::vector<const char*> names = pointersTo(extensions);
     device_ = vk::raii::Device(
         found_.physical,
-        vk::DeviceCreateInfo{.pNext = &features, .queueCreateInfoCount = 1, .pQueueCreateInfos = &queue});
+        vk::DeviceCreateInfo{.pNext = &features, .queueCreateInfoCount = 1, .pQueueCreateInfos = &queue}
+            .setPEnabledExtensionNames(names));
+}
+
+NativeDevice DeviceContext::native() const {
+    return {.instance = static_cast<VkInstance>(*instance_.instance),
+            .physicalDevice = static_cast<VkPhysicalDevice>(*found_.physical),
+            .device = static_cast<VkDevice>(*device_),
+            .queue = static_cast<VkQueue>(*queue_),
+            .queueFamily = found_.queueFamily};
 }
 
 std::uint32_t DeviceContext::memoryType(std::uint32_t allowed, MemoryKind kind) const {

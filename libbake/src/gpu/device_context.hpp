@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <pfvox/gpu.hpp>
+#include <pfvox/gpu_native.hpp>
 
 #include "gpu/allocation.hpp"
 #include "gpu/instance.hpp"
@@ -38,13 +39,14 @@ struct ProgramState {
 class DeviceContext {
   public:
     static Result<std::shared_ptr<DeviceContext>> open(const DeviceOptions& options);
-    DeviceContext(Instance instance, FoundDevice found);
+    DeviceContext(Instance instance, FoundDevice found, const DeviceOptions& options);
     ~DeviceContext();
     DeviceContext(const DeviceContext&) = delete;
     DeviceContext& operator=(const DeviceContext&) = delete;
 
     const DeviceInfo& info() const { return found_.info; }
     const vk::raii::Device& device() const { return device_; }
+    NativeDevice native() const;
     std::uint64_t maxBufferBytes() const { return maxBufferBytes_; }
     std::vector<std::string> validationMessages() const { return instance_.log->messages(); }
     MemoryUse memory() const { return memory_; }
@@ -65,7 +67,7 @@ class DeviceContext {
     void release(const Allocation& allocation);
 
   private:
-    void createDevice();
+    void createDevice(const std::vector<std::string>& extensions);
     StagingRing::Services stagingServices();
     vk::raii::CommandBuffer createCommands() const;
     std::uint64_t submitCommands(const vk::raii::CommandBuffer& commands);

@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cstring>
 #include <optional>
+#include <pfvox/gpu_native.hpp>
 
 namespace pfvox::gpu {
 
@@ -71,6 +72,18 @@ DeviceKind kindOf(vk::PhysicalDeviceType type) {
     }
 }
 
+/// The first family that computes, draws and fits.
+std::optional<std::uint32_t> fittingFamily(const vk::raii::PhysicalDevice& device, VkInstance instance,
+                                           const DeviceOptions& options) {
+    const std::vector<vk::QueueFamilyProperties> families = device.getQueueFamilyProperties();
+    const vk::QueueFlags needed = vk::QueueFlagBits::eCompute | vk::QueueFlagBits::eGraphics;
+    for (std::uint32_t i = 0; i < families.size(); ++i) {
+        if ((families[i].queueFlags & needed) != needed) continue;
+        if (options.queueFits({.instance = instance, .physicalDevice = *device, .index = i})) return i;
+    }
+    return std::nullopt;
+}
+
 /// A family that computes; one without graphics before others, because it competes with nobody.
 std::optional<std::uint32_t> computeFamily(const vk::raii::PhysicalDevice& device) {
     const std::vector<vk::QueueFamilyProperties> families = device.getQueueFamilyProperties();
@@ -83,14 +96,26 @@ std::optional<std::uint32_t> computeFamily(const vk::raii::PhysicalDevice& devic
     return any;
 }
 
-std::string missingOf(const vk::raii::PhysicalDevice& device, std::optional<std::uint32_t> family) {
+/// The first of these extensions that the device lacks; empty = none.
+std::string missingExtension(const vk::raii::PhysicalDevice& device, const std::vector<std::string>& wanted) {
+    if (wanted.empty()) return {};
+    const std::vector<vk::ExtensionProperties> there = device.enumerateDeviceExtensionProperties();
+    for (const std::string& name : wanted) {
+        const auto isIt = [&](const vk::ExtensionProperties& e) { return name == e.extensionName.data(); };
+        if (std::ranges::none_of(there, isIt)) return name;
+    }
+    return {};
+}
+
+std::string missingOf(const vk::raii::PhysicalDevice& device, std::optional<std::uint32_t> family,
+                      const DeviceOptions& options) {
     if (device.getProperties().apiVersion < VK_API_VERSION_1_2) return "Vulkan 1.2";
     const auto chain = device.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan12Features>();
     const auto& features = chain.get<vk::PhysicalDeviceVulkan12Features>();
     if (!features.bufferDeviceAddress) return "bufferDeviceAddress";
     if (!features.timelineSemaphore) return "timelineSemaphore";
-    if (!family) return "a compute queue";
-    return {};
+    if (!family) return options.queueFits ? "a queue that computes and shows pictures" : "a compute queue";
+    return missingExtension(device, options.deviceExtensions);
 }
 
 std::uint64_t localMemoryBytes(const vk::raii::PhysicalDevice& device) {
@@ -112,9 +137,11 @@ std::string driverOf(const vk::raii::PhysicalDevice& device) {
     return fmt::format("{} {}", driver.driverName.data(), driver.driverInfo.data());
 }
 
-FoundDevice describeDevice(vk::raii::PhysicalDevice physical, std::uint32_t index) {
+FoundDevice describeDevice(vk::raii::PhysicalDevice physical, std::uint32_t index, VkInstance instance,
+                           const DeviceOptions& options) {
     const vk::PhysicalDeviceProperties properties = physical.getProperties();
-    const std::optional<std::uint32_t> family = computeFamily(physical);
+    const std::optional<std::uint32_t> family =
+        options.queueFits ? fittingFamily(physical, instance, options) : computeFamily(physical);
     DeviceInfo info{.index = index,
                     .name = properties.deviceName.data(),
                     .kind = kindOf(properties.deviceType),
@@ -122,7 +149,7 @@ FoundDevice describeDevice(vk::raii::PhysicalDevice physical, std::uint32_t inde
                     .apiVersionMajor = VK_API_VERSION_MAJOR(properties.apiVersion),
                     .apiVersionMinor = VK_API_VERSION_MINOR(properties.apiVersion),
                     .localMemoryBytes = localMemoryBytes(physical),
-                    .missing = missingOf(physical, family)};
+                    .missing = missingOf(physical, family, options)};
     return {.info = std::move(info), .physical = std::move(physical), .queueFamily = family.value_or(0)};
 }
 
@@ -176,7 +203,14 @@ std::vector<std::string> ValidationLog::messages() const {
     return messages_;
 }
 
-Result<Instance> createInstance(bool validation) {
+std::vector<const char*> pointersTo(const std::vector<std::string>& texts) {
+    std::vector<const char*> pointers;
+    for (const std::string& text : texts) pointers.push_back(text.c_str());
+    return pointers;
+}
+
+Result<Instance> createInstance(const DeviceOptions& options) {
+    const bool validation = options.validation;
     return guarded("cannot start Vulkan", [&] {
         Instance made{.context = {}, .log = std::make_unique<ValidationLog>()};
         if (validation && !hasLayer(made.context, kValidationLayer)) {
@@ -186,26 +220,28 @@ Result<Instance> createInstance(bool validation) {
         const vk::ApplicationInfo application{
             .pApplicationName = "pfvox", .pEngineName = "pfvox", .apiVersion = VK_API_VERSION_1_2};
         const std::array layers{kValidationLayer};
-        const std::array extensions{VK_EXT_DEBUG_UTILS_EXTENSION_NAME};
+        std::vector<const char*> extensions = pointersTo(options.instanceExtensions);
+        if (validation) extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
         const vk::DebugUtilsMessengerCreateInfoEXT messenger = messengerInfo(*made.log);
         vk::InstanceCreateInfo info{.pApplicationInfo = &application};
         if (validation) {
             info.pNext = &messenger;  // covers the creation of the instance itself
             info.setPEnabledLayerNames(layers);
-            info.setPEnabledExtensionNames(extensions);
         }
+        info.setPEnabledExtensionNames(extensions);
         made.instance = vk::raii::Instance(made.context, info);
         if (validation) made.messenger = vk::raii::DebugUtilsMessengerEXT(made.instance, messenger);
         return made;
     });
 }
 
-Result<std::vector<FoundDevice>> findDevices(const Instance& instance) {
+Result<std::vector<FoundDevice>> findDevices(const Instance& instance, const DeviceOptions& options) {
     return guarded("cannot list Vulkan devices", [&] {
         std::vector<FoundDevice> devices;
         for (vk::raii::PhysicalDevice& physical : vk::raii::PhysicalDevices(instance.instance)) {
             devices.push_back(
-                describeDevice(std::move(physical), static_cast<std::uint32_t>(devices.size())));
+                describeDevice(std::move(physical), static_cast<std::uint32_t>(devices.size()),
+                               *instance.instance, options));
         }
         return devices;
     });

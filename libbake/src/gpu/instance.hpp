@@ -28,15 +28,18 @@ struct Instance {
     vk::raii::DebugUtilsMessengerEXT messenger{nullptr};
 };
 
-/// Errors: GpuUnavailable, also when validation is asked for and its layer is not installed.
-Result<Instance> createInstance(bool validation);
+/// Errors: GpuUnavailable, also when validation is asked for and its layer is not installed, or an extension is missing.
+Result<Instance> createInstance(const DeviceOptions& options);
 
 struct FoundDevice {
     DeviceInfo info;
     vk::raii::PhysicalDevice physical{nullptr};
     std::uint32_t queueFamily = 0;
 };
-Result<std::vector<FoundDevice>> findDevices(const Instance& instance);
+Result<std::vector<FoundDevice>> findDevices(const Instance& instance, const DeviceOptions& options);
+
+/// Of texts that outlive them.
+std::vector<const char*> pointersTo(const std::vector<std::string>& texts);
 
 /// Position of the device that the selector means (DeviceOptions::selector).
 Result<std::size_t> selectDevice(const std::vector<FoundDevice>& devices, const std::string& selector);

@@ -1,0 +1,250 @@
+// The interactive viewer without its window: what is loaded, what commands do, what happens when files change.
+#include "session.hpp"
+
+#include <gmock/gmock.h>
+
+#include <chrono>
+#include <pfvox/pf_vox.hpp>
+#include <thread>
+
+#include "png.hpp"
+#include "support/image_compare.hpp"
+#include "support/picture_fixture.hpp"
+#include "support/procedural.hpp"
+#include "support/temp_folder.hpp"
+
+namespace pfvox::test {
+namespace {
+
+using namespace viewer;
+using ::testing::HasSubstr;
+
+constexpr glm::uvec2 kSize{160, 120};
+
+VoxelAsset redBox() {
+    VoxelAsset asset;
+    asset.materials = {material(220, 20, 20)};
+    VoxelModel model;
+    fillBox(model, {.min = {0, 0, 0}, .max = {8, 8, 8}}, [](glm::ivec3) { return MaterialIndex{0}; });
+    asset.models.push_back(std::move(model));
+    asset.instances.push_back({.model = 0, .worldFromModel = Affine{0.1}, .name = "box"});
+    return asset;
+}
+
+class SessionTest : public PictureTest {
+  protected:
+    void TearDown() override {
+        session.reset();
+        PictureTest::TearDown();
+    }
+    void write(const std::string& name, const VoxelAsset& asset) {
+        const auto bytes = encodePfVox(build(asset), EncodeSettings{});
+        ASSERT_TRUE(bytes) << describe(bytes.error());
+        writeText(folder / name, {reinterpret_cast<const char*>(bytes->data()), bytes->size()});
+    }
+    void start(const SessionStart& what, Memory memory = {}) {
+        auto made = Session::create(device(), what, std::move(memory), log);
+        ASSERT_TRUE(made) << describe(made.error());
+        session = *std::move(made);
+        settle();
+    }
+    /// Lets a second pass, as far as the session can tell, and waits for what it loads.
+    void settle() {
+        for (int i = 0; i < 4; ++i) session->update(now += 0.26);
+        for (int i = 0; i < 2000 && session->isLoading(); ++i) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(5));
+            session->update(now);
+        }
+        ASSERT_FALSE(session->isLoading());
+    }
+    void press(Key key, bool control = false) {
+        const KeyBinding* const binding = bindingOf(key, control);
+        ASSERT_NE(binding, nullptr);
+        session->execute(*binding);
+    }
+    Picture drawn() {
+        const Result<void> done = session->draw(kSize);
+        EXPECT_TRUE(done) << describe(done.error());
+        return session->frames().picture(device()).value();
+    }
+
+    TempFolder folder;
+    MessageLog log;
+    std::unique_ptr<Session> session;
+    double now = 0.0;
+};
+
+TEST_F(SessionTest, ShowsAFileAndRestsWhenThePictureIsSmooth) {
+    write("room.pf_vox", demoRoom());
+    start({.path = folder / "room.pf_vox"});
+    ASSERT_NE(session->shown(), nullptr);
+    EXPECT_TRUE(session->needsFrame(kSize));
+    for (int i = 0; i < 128; ++i) ASSERT_TRUE(session->draw(kSize));
+    EXPECT_FALSE(session->needsFrame(kSize));
+    EXPECT_EQ(session->frames().frames(), 128u);
+    press('3');
+    EXPECT_TRUE(session->needsFrame(kSize));
+    EXPECT_FALSE(session->needsFrame({0, 0})) << "minimised";
+}
+
+TEST_F(SessionTest, WithoutAntiAliasingOneFrameIsAll) {
+    write("room.pf_vox", demoRoom());
+    start({.path = folder / "room.pf_vox"}, {.settings = {.antiAliasing = false}, .cameras = {}});
+    ASSERT_TRUE(session->draw(kSize));
+    EXPECT_FALSE(session->needsFrame(kSize));
+    press('2');
+    ASSERT_TRUE(session->draw(kSize));
+    EXPECT_FALSE(session->needsFrame(kSize));
+}
+
+TEST_F(SessionTest, KeysSwitchViewsWindowsHelpAndCamera) {
+    write("room.pf_vox", demoRoom());
+    start({.path = folder / "room.pf_vox"});
+    for (int i = 0; i < static_cast<int>(kViewModes); ++i) {
+        press('1' + i);
+        EXPECT_EQ(session->mode, static_cast<ViewMode>(i));
+    }
+    press('H');
+    EXPECT_TRUE(session->showHelp);
+    press(kKeyTab);
+    EXPECT_FALSE(session->settings.showWindows);
+    press('C');
+    EXPECT_EQ(session->camera.mode, CameraMode::Fly);
+    const ViewCamera framed = session->camera.camera();
+    session->camera.move({1, 1, 1}, 3.0, true);
+    press('F');
+    EXPECT_NEAR(glm::length(session->camera.camera().target - framed.target), 0.0, 0.5);
+    press('V');
+    EXPECT_THAT(log.messages().back().text, HasSubstr("no cameras"));
+    EXPECT_FALSE(session->wantsToQuit());
+    press('Q', true);
+    EXPECT_TRUE(session->wantsToQuit());
+}
+
+TEST_F(SessionTest, ScreenshotsAreNumberedAndShowThePicture) {
+    write("room.pf_vox", demoRoom());
+    start({.path = folder / "room.pf_vox", .screenshotFolder = folder / "shots"});
+    const Picture picture = drawn();
+    press('P');
+    press('P');
+    const Result<Picture> written = readPng(folder / "shots" / "room-002.png");
+    ASSERT_TRUE(written) << describe(written.error());
+    EXPECT_TRUE(written->pixels == picture.pixels);
+    EXPECT_TRUE(readPng(folder / "shots" / "room-001.png"));
+}
+
+TEST_F(SessionTest, PickTellsVoxelMaterialModelAndInstance) {
+    write("box.pf_vox", redBox());
+    write("room.pf_vox", demoRoom());
+    writeText(folder / "s.toml",
+              "[[models]]\npath = 'room.pf_vox'\nname = 'far away'\ntranslateVec = [500, 0, 0]\n"
+              "[[models]]\npath = 'box.pf_vox'\nname = 'first box'\ntranslateVec = [3, 0, 0]\n"
+              "[[models]]\npath = 'box.pf_vox'\nname = 'the box'\n");
+    start({.path = folder / "s.toml",
+           .camera = {.camera = ViewCamera{.position = {0.45, 0.35, 5.0}, .target = {0.45, 0.35, 0.0}}, .name = {}}});
+    drawn();
+    session->pickAt({0.5, 0.5});
+    ASSERT_TRUE(session->pick());
+    const Pick& pick = *session->pick();
+    EXPECT_EQ(pick.model, "the box");
+    EXPECT_THAT(pick.instance, HasSubstr("0 'box'"));
+    EXPECT_EQ(pick.voxel, glm::ivec3(4, 3, 7));
+    EXPECT_EQ(pick.baseColor, glm::u8vec4(220, 20, 20, 255));
+    EXPECT_THAT(pick.material, HasSubstr("0"));
+    EXPECT_NEAR(pick.distanceMetres, 4.2, 1e-4);
+    session->pickAt({0.01, 0.01});
+    EXPECT_FALSE(session->pick()) << "the sky";
+}
+
+TEST_F(SessionTest, AChangedFileIsShownAndTheCameraStays) {
+    write("a.pf_vox", demoRoom());
+    start({.path = folder / "a.pf_vox"});
+    session->camera.move({0, 0, 1}, 0.1, false);
+    const ViewCamera camera = session->camera.camera();
+    const std::uint64_t voxels = session->shown()->scene.statistics().voxels;
+    write("a.pf_vox", redBox());
+    settle();
+    EXPECT_NE(session->shown()->scene.statistics().voxels, voxels);
+    EXPECT_EQ(session->shown()->scene.statistics().voxels, 512u);
+    EXPECT_EQ(session->camera.camera(), camera);
+    EXPECT_FALSE(log.strip());
+}
+
+TEST_F(SessionTest, ABrokenFileKeepsTheSceneUntilItIsMended) {
+    write("a.pf_vox", redBox());
+    start({.path = folder / "a.pf_vox"});
+    const Picture before = drawn();
+    writeText(folder / "a.pf_vox", "nonsense, and not even long enough");
+    settle();
+    ASSERT_TRUE(log.strip());
+    EXPECT_THAT(*log.strip(), HasSubstr("a.pf_vox"));
+    ASSERT_NE(session->shown(), nullptr);
+    EXPECT_EQ(session->shown()->scene.statistics().voxels, 512u);
+    write("a.pf_vox", demoRoom());
+    settle();
+    EXPECT_FALSE(log.strip());
+    EXPECT_NE(session->shown()->scene.statistics().voxels, 512u);
+}
+
+TEST_F(SessionTest, AModelOfASceneIsWatchedToo) {
+    write("a.pf_vox", redBox());
+    writeText(folder / "s.toml", "[[models]]\npath = 'a.pf_vox'\n");
+    start({.path = folder / "s.toml"});
+    EXPECT_EQ(session->shown()->scene.statistics().voxels, 512u);
+    write("a.pf_vox", demoRoom());
+    settle();
+    EXPECT_NE(session->shown()->scene.statistics().voxels, 512u);
+}
+
+TEST_F(SessionTest, WhatCannotBeOpenedIsTold) {
+    start({.path = folder / "none.pf_vox"});
+    EXPECT_EQ(session->shown(), nullptr);
+    EXPECT_THAT(log.strip().value_or(""), HasSubstr("none.pf_vox"));
+    press(kKeyEscape);
+    EXPECT_FALSE(log.strip());
+    writeText(folder / "hall.vox", "VOX \x96 and so on, long enough to have a header of some kind ........");
+    session->open(folder / "hall.vox");
+    settle();
+    EXPECT_THAT(log.strip().value_or(""), HasSubstr("vox2pf convert"));
+    press('P');
+    session->pickAt({0.5, 0.5});
+    press('F');
+    EXPECT_TRUE(session->draw(kSize)) << "nothing to draw is no error";
+}
+
+TEST_F(SessionTest, AFolderIsGoneThrough) {
+    write("a.pf_vox", redBox());
+    write("b.pf_vox", demoRoom());
+    start({.path = folder.path()});
+    EXPECT_EQ(session->shown()->path.file.filename(), "a.pf_vox");
+    press(kKeyPageDown);
+    settle();
+    EXPECT_EQ(session->shown()->path.file.filename(), "b.pf_vox");
+    press(kKeyPageDown);
+    settle();
+    EXPECT_EQ(session->shown()->path.file.filename(), "a.pf_vox");
+}
+
+TEST_F(SessionTest, CamerasAreRememberedForEachFile) {
+    write("a.pf_vox", redBox());
+    write("b.pf_vox", demoRoom());
+    start({.path = folder / "a.pf_vox"});
+    const ViewCamera there{.position = {4, 3, 2}, .target = {0, 0, 0}, .fovYDegrees = 55};
+    session->camera.set(there);
+    session->open(folder / "b.pf_vox");
+    settle();
+    EXPECT_NE(session->camera.camera(), there);
+    session->open(folder / "a.pf_vox");
+    settle();
+    EXPECT_EQ(session->camera.camera(), there);
+    const Memory memory = session->memory();
+    EXPECT_EQ(memory.cameras.size(), 2u);
+    start({.path = folder / "a.pf_vox"}, memory);
+    EXPECT_EQ(session->camera.camera(), there);
+    const ViewCamera asked{.position = {9, 9, 9}, .target = {0, 0, 0}};
+    start({.path = folder / "a.pf_vox", .camera = {.camera = asked, .name = {}}}, memory);
+    EXPECT_EQ(session->camera.camera(), asked) << "what the command line says goes before";
+}
+
+}  // namespace
+}  // namespace pfvox::test

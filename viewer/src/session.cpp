@@ -1,0 +1,249 @@
+#include "session.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <system_error>
+
+#include "png.hpp"
+
+namespace pfvox::viewer {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr double kPollSeconds = 0.25;
+constexpr std::uint32_t kSmoothFrames = 128;  // then a picture that stands still is done
+constexpr std::size_t kKeptFrameTimes = 180;
+
+std::string cameraKey(const fs::path& file) {
+    std::error_code error;
+    const fs::path absolute = fs::weakly_canonical(file, error);
+    return (error ? file : absolute).string();
+}
+
+/// "hall-001.png", the first number that is free.
+fs::path freeScreenshotName(const fs::path& folder, const fs::path& file) {
+    for (int i = 1;; ++i) {
+        fs::path name = folder / fmt::format("{}-{:03}.png", file.stem().string(), i);
+        std::error_code error;
+        if (!fs::exists(name, error)) return name;
+    }
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Session>> Session::create(gpu::Device& device, const SessionStart& start, Memory memory,
+                                                 MessageLog& log) {
+    PFVOX_TRY(FrameSequence, frames, FrameSequence::create(device));
+    PFVOX_TRY(gpu::RayQuery, query, gpu::RayQuery::create(device));
+    std::unique_ptr<Session> session(new Session(device, std::move(frames), std::move(query), log));
+    session->settings = memory.settings;
+    session->cameras_ = std::move(memory.cameras);
+    session->camera.mode = session->settings.cameraMode;
+    session->mode = start.mode;
+    session->start_ = start;
+    if (!start.path.empty()) session->open(start.path);
+    return session;
+}
+
+void Session::open(const fs::path& path) {
+    Result<OpenPath> opened = openPath(path);
+    if (!opened) {
+        log_->addError(describe(opened.error()));
+        return;
+    }
+    load(*std::move(opened), false);
+}
+
+void Session::reload() {
+    if (!wanted_.file.empty()) load(wanted_, shown_ && shown_->path.file == wanted_.file);
+}
+
+void Session::load(OpenPath path, bool keepCamera) {
+    wanted_ = path;
+    // Watched from before they are read: what changes meanwhile is not missed.
+    DiagnosticList ignored;
+    const bool isScene = path.file.extension() == ".toml";
+    const Result<Scene> scene = isScene ? readScene(path.file, Limits{}, ignored) : Result<Scene>(Scene{});
+    watch_.watch(filesOf(path.file, scene ? *scene : Scene{}));
+    const fs::path file = path.file;
+    MessageLog* const log = log_;
+    loading_ = Loading{.path = std::move(path),
+                       .keepCamera = keepCamera,
+                       .scene = std::async(std::launch::async,
+                                           [file, log] { return loadScene(file, Limits{}, *log); })};
+}
+
+Result<void> Session::placeCamera(const fs::path& file, const Scene& scene) {
+    const CameraRequest request = std::exchange(start_.camera, {});  // of the first scene only
+    const auto remembered = cameras_.find(cameraKey(file));
+    const bool asked = request.camera || !request.name.empty();
+    if (!asked && remembered != cameras_.end()) {
+        camera.set(remembered->second);
+        return {};
+    }
+    PFVOX_TRY(const std::optional<ViewCamera>, chosen, chosenCamera(request, file, scene));
+    chosen ? camera.set(*chosen) : frameAll();
+    return {};
+}
+
+Result<void> Session::show(OpenPath path, LoadedScene loaded, bool keepCamera) {
+    PFVOX_TRY(gpu::Scene, scene, gpu::Scene::build(*device_, gpu::partsOf(loaded), *log_));
+    if (shown_ && !keepCamera) rememberCamera();
+    const bool sameLight = keepCamera && shown_ && lightingOf(shown_->loaded.scene) == lightingOf(loaded.scene);
+    if (!sameLight) lighting = lightingOf(loaded.scene);
+    shown_.emplace(ShownScene{std::move(path), std::move(loaded), std::move(scene)});
+    frames_.restart();
+    drawn_.reset();
+    pick_.reset();
+    camera.suit(shown_->scene.bounds());
+    return keepCamera ? Result<void>{} : placeCamera(shown_->path.file, shown_->loaded.scene);
+}
+
+void Session::update(double secondsSinceStart) {
+    if (loading_ && loading_->scene.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
+        Loading done = *std::exchange(loading_, std::nullopt);
+        Result<LoadedScene> loaded = done.scene.get();
+        const std::string name = done.path.file.string();
+        const Result<void> shown =
+            loaded ? show(std::move(done.path), *std::move(loaded), done.keepCamera)
+                   : Result<void>(tl::make_unexpected(loaded.error()));
+        if (shown) {
+            log_->dismissStrip();
+            log_->add(MessageKind::Note, "shows " + name);
+        } else {
+            log_->addError(describe(shown.error()));
+        }
+    }
+    if (secondsSinceStart < nextPoll_) return;
+    nextPoll_ = secondsSinceStart + kPollSeconds;
+    if (!loading_ && watch_.poll()) reload();
+}
+
+double Session::aspect() const {
+    const glm::uvec2 size = frames_.size();
+    return size.y == 0 ? 16.0 / 9.0 : static_cast<double>(size.x) / size.y;
+}
+
+void Session::frameAll() {
+    if (shown_) camera.frame(shown_->scene.bounds(), aspect());
+}
+
+void Session::nextCamera() {
+    if (!shown_ || shown_->loaded.scene.cameras.empty()) {
+        log_->add(MessageKind::Note, "the scene has no cameras");
+        return;
+    }
+    const std::vector<Camera>& cameras = shown_->loaded.scene.cameras;
+    const Camera& next = cameras[sceneCamera_++ % cameras.size()];
+    camera.set(viewCameraOf(next));
+    log_->add(MessageKind::Note, "camera " + (next.name.empty() ? "without a name" : "'" + next.name + "'"));
+}
+
+void Session::execute(const KeyBinding& binding) {
+    switch (binding.command) {
+        case Command::FrameAll:
+            return frameAll();
+        case Command::ToggleHelp:
+            showHelp = !showHelp;
+            return;
+        case Command::ToggleWindows:
+            settings.showWindows = !settings.showWindows;
+            return;
+        case Command::ToggleCameraMode:
+            camera.mode = camera.mode == CameraMode::Orbit ? CameraMode::Fly : CameraMode::Orbit;
+            return;
+        case Command::NextCamera:
+            return nextCamera();
+        case Command::ShowView:
+            mode = static_cast<ViewMode>(binding.argument);
+            return;
+        case Command::Screenshot:
+            return writeScreenshot();
+        case Command::Reload:
+            return reload();
+        case Command::NextFile:
+            return load({.file = neighbourOf(wanted_, 1), .siblings = wanted_.siblings}, false);
+        case Command::PreviousFile:
+            return load({.file = neighbourOf(wanted_, -1), .siblings = wanted_.siblings}, false);
+        case Command::DismissMessage:
+            return log_->dismissStrip();
+        case Command::Quit:
+            quit_ = true;
+            return;
+    }
+}
+
+void Session::pickAt(glm::dvec2 parts) {
+    pick_.reset();
+    if (!shown_) return;
+    const gpu::GpuRay ray = rayThrough(camera.camera(), parts, aspect());
+    const Result<gpu::RayBatch> batch =
+        query_.cast(*device_, shown_->scene, {&ray, 1}, gpu::RayMode::ClosestHit);
+    if (!batch) return log_->addError(describe(batch.error()));
+    pick_ = describePick(shown_->loaded, ray, batch->hits.front());
+    if (pick_) {
+        log_->add(MessageKind::Note, fmt::format("voxel {}, {}, {} of '{}', instance {}, material {}", pick_->voxel.x,
+                                                 pick_->voxel.y, pick_->voxel.z, pick_->model, pick_->instance,
+                                                 pick_->material));
+    }
+}
+
+void Session::writeScreenshot() {
+    if (!shown_ || frames_.pixels() == nullptr) return;
+    const fs::path file = freeScreenshotName(start_.screenshotFolder, shown_->path.file);
+    Result<Picture> picture = frames_.picture(*device_);
+    const Result<void> written =
+        picture ? writePng(file, *picture) : Result<void>(tl::make_unexpected(picture.error()));
+    written ? log_->add(MessageKind::Note, "wrote " + file.string()) : log_->addError(describe(written.error()));
+}
+
+PictureSettings Session::pictureSettings(glm::uvec2 windowPixels) const {
+    const auto scaled = [&](std::uint32_t edge) {
+        return std::max(1u, static_cast<std::uint32_t>(std::lround(edge * settings.renderScale)));
+    };
+    PictureSettings picture{.width = scaled(windowPixels.x),
+                            .height = scaled(windowPixels.y),
+                            .samplesPerPixel = 1,
+                            .mode = mode,
+                            .lodPixels = static_cast<float>(settings.lodPixels),
+                            .lighting = lighting};
+    picture.lighting.exposure = static_cast<float>(std::exp2(settings.exposureStops));
+    return picture;
+}
+
+bool Session::needsFrame(glm::uvec2 windowPixels) const {
+    if (!shown_ || windowPixels.x == 0 || windowPixels.y == 0) return false;
+    if (!drawn_ || !(drawn_->first == camera.camera()) || !(drawn_->second == pictureSettings(windowPixels)))
+        return true;
+    return settings.antiAliasing && frames_.frames() < kSmoothFrames;
+}
+
+Result<void> Session::draw(glm::uvec2 windowPixels) {
+    if (!needsFrame(windowPixels)) return {};
+    const PictureSettings picture = pictureSettings(windowPixels);
+    if (!settings.antiAliasing) frames_.restart();
+    PFVOX_TRY(const PictureStatistics, statistics,
+              frames_.draw(*device_, shown_->scene, camera.camera(), picture));
+    statistics_ = statistics;
+    drawn_ = {camera.camera(), picture};
+    frameTimesMs_.push_back(static_cast<float>(statistics_.gpuMs));
+    if (frameTimesMs_.size() > kKeptFrameTimes) frameTimesMs_.pop_front();
+    return {};
+}
+
+void Session::rememberCamera() {
+    if (shown_) cameras_[cameraKey(shown_->path.file)] = camera.camera();
+}
+
+Memory Session::memory() const {
+    Memory memory{.settings = settings, .cameras = cameras_};
+    memory.settings.cameraMode = camera.mode;
+    if (shown_) memory.cameras[cameraKey(shown_->path.file)] = camera.camera();
+    return memory;
+}
+
+}  // namespace pfvox::viewer

@@ -1,0 +1,118 @@
+// Session: everything of the interactive viewer but the window: what is loaded, how it is seen, what commands do.
+//
+//     paths, commands, time -> Session -> pixels on the device, messages
+//
+// Files are read in the background; the scene on the screen stays until the next one is ready, and when that fails.
+#pragma once
+
+#include <deque>
+#include <future>
+#include <optional>
+#include <pfvox/ray_query.hpp>
+
+#include "camera_choice.hpp"
+#include "camera_controller.hpp"
+#include "commands.hpp"
+#include "file_watch.hpp"
+#include "frame_sequence.hpp"
+#include "message_log.hpp"
+#include "open_path.hpp"
+#include "pick.hpp"
+#include "settings.hpp"
+
+namespace pfvox::viewer {
+
+/// A scene on the screen.
+struct ShownScene {
+    OpenPath path;
+    LoadedScene loaded;
+    gpu::Scene scene;
+};
+
+/// What the command line asks for.
+struct SessionStart {
+    std::filesystem::path path;
+    CameraRequest camera;
+    ViewMode mode = ViewMode::Final;
+    std::filesystem::path screenshotFolder = {};  ///< empty = where the program runs
+};
+
+class Session {
+  public:
+    /// Begins to load. Errors: those of the programs on the device.
+    static Result<std::unique_ptr<Session>> create(gpu::Device& device, const SessionStart& start, Memory memory,
+                                                   MessageLog& log);
+
+    /// Begins to load another file, scene or folder.
+    void open(const std::filesystem::path& path);
+    /// The same files again.
+    void reload();
+    void execute(const KeyBinding& binding);
+    /// Tells what is at a point of the picture: parts of its edges from the upper left.
+    void pickAt(glm::dvec2 parts);
+    void frameAll();
+
+    /// Takes over what has been loaded, looks after changed files.
+    void update(double secondsSinceStart);
+    /// Draws one frame for a window of this many pixels, if it would differ from what pixels() holds. Errors:
+    /// GpuLost, GpuOutOfMemory.
+    Result<void> draw(glm::uvec2 windowPixels);
+    /// Whether another draw() would change something.
+    bool needsFrame(glm::uvec2 windowPixels) const;
+
+    const FrameSequence& frames() const { return frames_; }
+    const ShownScene* shown() const { return shown_ ? &*shown_ : nullptr; }
+    bool isLoading() const { return loading_.has_value(); }
+    bool wantsToQuit() const { return quit_; }
+    gpu::Device& device() const { return *device_; }
+    MessageLog& log() const { return *log_; }
+    const PictureStatistics& statistics() const { return statistics_; }
+    const std::deque<float>& frameTimesMs() const { return frameTimesMs_; }  ///< the latest last
+    const std::optional<Pick>& pick() const { return pick_; }
+    /// Settings and cameras as they are to be remembered.
+    Memory memory() const;
+
+    // What windows change.
+    CameraController camera;
+    Settings settings;
+    Lighting lighting;  ///< without the exposure, which is in `settings`
+    ViewMode mode = ViewMode::Final;
+    bool showHelp = false;
+
+  private:
+    struct Loading {
+        OpenPath path;
+        bool keepCamera = false;
+        std::future<Result<LoadedScene>> scene;
+    };
+    Session(gpu::Device& device, FrameSequence frames, gpu::RayQuery query, MessageLog& log)
+        : device_(&device), log_(&log), frames_(std::move(frames)), query_(std::move(query)) {}
+    void load(OpenPath path, bool keepCamera);
+    Result<void> show(OpenPath path, LoadedScene loaded, bool keepCamera);
+    Result<void> placeCamera(const std::filesystem::path& file, const Scene& scene);
+    void rememberCamera();
+    void nextCamera();
+    void writeScreenshot();
+    PictureSettings pictureSettings(glm::uvec2 windowPixels) const;
+    double aspect() const;
+
+    gpu::Device* device_;
+    MessageLog* log_;
+    FrameSequence frames_;
+    gpu::RayQuery query_;
+    CameraMemory cameras_;
+    SessionStart start_;
+    OpenPath wanted_;  ///< what was opened last, whether or not it could be
+    std::optional<ShownScene> shown_;
+    std::optional<Loading> loading_;
+    FileWatch watch_;
+    double nextPoll_ = 0.0;
+    std::optional<std::pair<ViewCamera, PictureSettings>> drawn_;
+    PictureStatistics statistics_;
+    std::deque<float> frameTimesMs_;
+    std::optional<Pick> pick_;
+    std::size_t sceneCamera_ = 0;
+    bool quit_ = false;
+};
+
+}  // namespace pfvox::viewer
