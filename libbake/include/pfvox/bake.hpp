@@ -1,0 +1,126 @@
+// Bake: a scene becomes a field of light-field probes.
+//
+//     LoadedScene -> [bakeProbes] -> out.pf_probe
+//                     per probe: place -> what it sees -> light there -> small layers -> journal
+//                     at the end: proximity grid -> file
+//
+// What is stored is I = E / pi of indirect light; the method is in docs/baking.md. Lengths are metres, light is
+// linear RGB. One thread at a time for a device; the observer is called on the calling thread only.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <pfvox/error.hpp>
+#include <pfvox/gpu.hpp>
+#include <pfvox/pf_probe.hpp>
+#include <pfvox/proximity.hpp>
+#include <pfvox/scene.hpp>
+#include <string>
+
+namespace pfvox {
+
+/// Which direct light a path looks for. The two one-sided ways are for tests: all three have one expectation.
+enum class LightSampling : std::uint8_t {
+    Combined,    ///< emitters and directions, joined by the balance heuristic
+    Emitters,    ///< emissive voxels by next-event estimation only
+    Directions,  ///< emissive voxels only where a path runs into them
+};
+
+struct BakeSettings {
+    ProbeResolution resolution = resolutionOf(ProbeProfile::Default);
+    std::uint64_t seed = 0;
+    std::uint32_t minSamples = 32;    ///< paths a texel; a multiple of 16
+    std::uint32_t maxSamples = 4096;  ///< a multiple of 16, >= minSamples
+    /// A tile of 8 x 8 texels stops when the standard error of its mean is under noiseTarget x max(mean,
+    /// noiseFloor); 0 = every texel gets minSamples.
+    float noiseTarget = 0.02f;
+    float noiseFloor = 0.01f;  ///< radiance
+    /// Reflections a path makes behind its texel: 0 = only light that reaches the texel's surface straight from
+    /// emitters and sky. Nothing = no limit but roulette (and a cap of 16).
+    std::optional<std::uint32_t> maxBounces;
+    /// The probes to bake; the file is then a shard. Nothing = all.
+    std::optional<ProbeRange> range;
+    LightSampling sampling = LightSampling::Combined;
+    bool relocate = true;   ///< move probes out of solids; false: those that touch one are inactive
+    bool proximity = true;  ///< make the proximity grid; shards have none
+    int zstdLevel = 1;      ///< 1 to 19
+    bool resume = false;    ///< take finished probes from the journal beside the output
+    bool force = false;     ///< bake even if the output is there and says it has this content already
+    double dispatchSeconds = 0.25;  ///< device work is cut into pieces of about this length
+    std::string toolName = "pfvox";  ///< kept in the file
+};
+
+/// Where a bake stands.
+struct BakeProgress {
+    std::uint64_t probes = 0;         ///< to be baked in all
+    std::uint64_t probesDone = 0;     ///< those that the journal had counted
+    std::uint64_t probesReused = 0;   ///< of these, taken from the journal
+    std::uint64_t rays = 0;           ///< cast so far
+    double elapsedSeconds = 0.0;      ///< since the bake began
+    double gpuMs = 0.0;               ///< device time so far
+    /// From the time of the probes baked so far; nothing before the first.
+    std::optional<double> secondsLeft;
+};
+
+class BakeObserver {
+  public:
+    BakeObserver() = default;
+    BakeObserver(const BakeObserver&) = delete;
+    BakeObserver& operator=(const BakeObserver&) = delete;
+    virtual ~BakeObserver() = default;
+
+    /// After each piece of device work.
+    virtual void progress(const BakeProgress& progress) { static_cast<void>(progress); }
+    /// Asked after each piece of device work. True: the bake ends with Cancelled; what is finished is in the
+    /// journal.
+    virtual bool stopRequested() { return false; }
+};
+
+/// Rays and device time of one pass.
+struct BakePass {
+    std::uint64_t rays = 0;
+    double gpuMs = 0.0;
+};
+
+struct BakeReport {
+    bool upToDate = false;  ///< the output had this content already: nothing was done, the rest is empty
+    BakePass geometry;      ///< what the probes see
+    BakePass light;         ///< paths, shadow rays counted
+    double smallLayersMs = 0.0;  ///< CPU: irradiance, moments, min maps, summed over threads
+    double proximityMs = 0.0;
+    double writeMs = 0.0;  ///< compression and journal, summed over threads; then copying into the file
+    double totalMs = 0.0;  ///< wall clock
+    std::uint64_t probes = 0;
+    std::uint64_t reused = 0;  ///< taken from the journal
+    std::uint64_t active = 0;  ///< relocated ones included
+    std::uint64_t relocated = 0;
+    std::uint64_t inactive = 0;
+    std::uint64_t emitterFaces = 0;
+    std::uint64_t cappedRays = 0;  ///< given up by the traversal; 0 in valid data
+    double meanError = 0.0;        ///< relative standard error of I, mean over active probes
+    double maxError = 0.0;
+    double cappedTileShare = 0.0;  ///< tiles that stopped at maxSamples; mean over active probes
+    double meanSamples = 0.0;      ///< paths a texel that sees a surface, of probes baked in this run
+    ProximityReport proximity;     ///< uncoveredCells among it
+    std::uint64_t fileBytes = 0;
+};
+
+/// Of everything in a scene that decides the light: models, transforms, materials, sun and sky. Cameras, names
+/// and the probe grid are not in it.
+ContentKey sceneContentHash(const LoadedScene& scene);
+
+/// What a bake of this scene with these settings on this device puts into the header of its file: with an equal
+/// key and an output that holds it there is nothing to do.
+ContentKey bakeContentKey(const LoadedScene& scene, const BakeSettings& settings,
+                          const gpu::DeviceInfo& device);
+
+/// Errors: BadValue (settings out of range, with their name), Cancelled (the observer asked to stop; resume
+/// takes the finished probes), FileNotWritable, GpuOutOfMemory, GpuLost, those of gpu::Scene::build and
+/// ProbeFileWriter. Diagnostics: bake-grid-outside (models stand out of the grid by more than half a step),
+/// bake-uncovered-cells, and those of the journal.
+Result<BakeReport> bakeProbes(gpu::Device& device, const LoadedScene& scene, const BakeSettings& settings,
+                              const std::filesystem::path& output, BakeObserver& observer,
+                              Diagnostics& diagnostics);
+
+}  // namespace pfvox
