@@ -40,6 +40,8 @@ void exitOnInterrupt(std::function<void()> lastWords) {
     }).detach();
 }
 
+bool isInterrupted() { return isEnding; }
+
 WriteGuard::WriteGuard() : lock_(writeGate(), std::defer_lock) {
     isEnding.wait(true);
     lock_.lock();

@@ -5,6 +5,8 @@
 
 namespace pfvox::tools {
 
+/// A scene to a PF_PROBE file.
+Command makeBakeCommand(CLI::App& tool);
 /// What is in a PF_PROBE file.
 Command makeInfoCommand(CLI::App& tool);
 /// Everything that is wrong with a PF_PROBE file.

@@ -23,10 +23,12 @@ std::string versionText() {
 HelpText helpText() {
     return {.summary = "probe-bake bakes the indirect light of a scene into a grid of light-field probes, and inspects "
                        "such files.",
-            .usage = {"probe-bake info [options] <file.pf_probe>...", "probe-bake validate [options] <file.pf_probe>...",
+            .usage = {"probe-bake [bake] [options] <scene.toml | file.pf_vox> -o <file.pf_probe>",
+                      "probe-bake info [options] <file.pf_probe>...", "probe-bake validate [options] <file.pf_probe>...",
                       "probe-bake compare [options] <a.pf_probe> <b.pf_probe>",
                       "probe-bake merge [options] <shard.pf_probe>... -o <file.pf_probe>"},
-            .examples = {{"probe-bake info hall.pf_probe", "what is in it"}}};
+            .examples = {{"probe-bake scene.toml -o scene.pf_probe", "bake the scene's grid"},
+                         {"probe-bake info hall.pf_probe", "what is in it"}}};
 }
 
 ExitCode run(int argc, char** argv) {
@@ -35,7 +37,7 @@ ExitCode run(int argc, char** argv) {
     });
     const auto tool = makeTool("probe-bake", helpText(), versionText());
     tool->require_subcommand(1);
-    const std::array commands{makeInfoCommand(*tool), makeValidateCommand(*tool), makeCompareCommand(*tool),
+    const std::array commands{makeBakeCommand(*tool), makeInfoCommand(*tool), makeValidateCommand(*tool), makeCompareCommand(*tool),
                               makeMergeCommand(*tool)};
     if (const auto exitCode = parseCommandLine(*tool, withDefaultCommand(*tool, "bake", argc, argv))) {
         return *exitCode;
