@@ -113,19 +113,14 @@ TexelWalk beginTexelWalk(FieldSegment segment, float s, uint edge) {
 
 float exitOf(TexelWalk walk, float last) { return clamp(min(walk.next.x, walk.next.y), walk.s, last); }
 
-void stepTexel(inout TexelWalk walk, float exit) {
+// Ends of a line may lie on the border of the map; rounding must not lead over it.
+void stepTexel(inout TexelWalk walk, float exit, uint edge) {
     walk.s = exit;
-    if (walk.next.x <= walk.next.y) {
-        walk.texel.x += walk.way.x;
-        walk.next.x += walk.perTexel.x;
-    } else {
-        walk.texel.y += walk.way.y;
-        walk.next.y += walk.perTexel.y;
-    }
-}
-
-bool onMap(ivec2 texel, uint edge) {
-    return all(greaterThanEqual(texel, ivec2(0))) && all(lessThan(texel, ivec2(edge)));
+    int axis = walk.next.x <= walk.next.y ? 0 : 1;
+    int texel = walk.texel[axis] + walk.way[axis];
+    bool inside = texel >= 0 && texel < int(edge);
+    if (inside) walk.texel[axis] = texel;
+    walk.next[axis] = inside ? walk.next[axis] + walk.perTexel[axis] : 1e30;
 }
 
 uint minCodeAt(ProbeEntry probe, ivec2 texel, uint edge) {
@@ -150,9 +145,13 @@ uint traceTexels(ProbeFieldRecord field, ProbeEntry probe, FieldSegment segment,
         float depth = metresOfCode(field, depthCodeOf(word));
         if (max(before, after) >= depth) {
             vec3 normal = normalOf(word);
-            float along = dot(depth * directionOfTexel(uint(walk.texel.x), uint(walk.texel.y), edge) - segment.origin,
-                              segment.direction);
-            if (min(before, after) < depth + field.thickness && dot(normal, segment.direction) < 0.0) {
+            vec3 view = directionOfTexel(uint(walk.texel.x), uint(walk.texel.y), edge);
+            float along = dot(depth * view - segment.origin, segment.direction);
+            float thickness = field.thickness + surfaceTolerance(depth, dot(view, normal), edge);
+            if (min(before, after) < depth + thickness && dot(normal, segment.direction) < 0.0) {
+                // Where the ray meets the plane that the texel shows, but not far from the texel.
+                float onPlane = dot(depth * view - segment.origin, normal) / dot(segment.direction, normal);
+                along = clamp(onPlane, min(tBefore, along - thickness), max(tAfter, along + thickness));
                 hit.state = kFieldHit;
                 hit.t = max(along, 0.0);
                 hit.normal = normal;
@@ -163,8 +162,7 @@ uint traceTexels(ProbeFieldRecord field, ProbeEntry probe, FieldSegment segment,
             return kFieldUnknown;
         }
         if (exit >= span.y) return kFieldMiss;
-        stepTexel(walk, exit);
-        if (!onMap(walk.texel, edge)) return kFieldMiss;
+        stepTexel(walk, exit, edge);
         tBefore = tAfter;
         before = after;
     }
@@ -188,8 +186,7 @@ uint traceSegment(ProbeFieldRecord field, ProbeEntry probe, FieldSegment segment
             if (state != kFieldMiss) return state;
         }
         if (exit >= 1.0) return kFieldMiss;
-        stepTexel(walk, exit);
-        if (!onMap(walk.texel, edge)) return kFieldMiss;
+        stepTexel(walk, exit, edge);
         before = after;
     }
     ++statistics.capped;
@@ -251,20 +248,32 @@ uint traceCell(ProbeFieldRecord field, ivec3 cell, FieldRay ray, inout float tMi
     return kFieldUnknown;
 }
 
-// Of fields with depth maps. tMax may be anything up to infinity: beyond Far no probe knows anything.
+// The next other cell along the ray, from a time on; false when there is none any more. The time moves there.
+bool nextFieldCell(ProbeFieldRecord field, FieldRay ray, inout float t, inout ivec3 cell) {
+    float pace = 0.5 * min(field.step.x, min(field.step.y, field.step.z));
+    float end = min(ray.tMax, length(field.step * vec3(field.counts)));
+    for (; t < end; t += pace) {
+        ivec3 at = probeCellOf(field, ray.origin + t * ray.direction);
+        if (at == cell) continue;
+        cell = at;
+        return true;
+    }
+    return false;
+}
+
+// Of fields with depth maps. tMax may be anything up to infinity: beyond Far no probe knows anything. When the probes
+// around the origin do not know, those further along the ray may.
 FieldHit traceField(ProbeFieldRecord field, FieldRay ray, inout FieldStatistics statistics) {
     FieldHit hit = FieldHit(kFieldUnknown, 0.0, vec3(0.0), kNoProbeIndex, 0u);
     ray.tMax = min(ray.tMax, 4.0 * field.farMetres);
     float tMin = 0.0;
+    float tCell = 0.0;
     ivec3 cell = probeCellOf(field, ray.origin);
     for (uint restart = 0u; restart <= kMaxFieldRestarts; ++restart) {
-        float before = tMin;
         hit.state = traceCell(field, cell, ray, tMin, hit, statistics);
         if (hit.state != kFieldUnknown) break;
-        // Further on other probes may see more; where nothing moved they will not.
-        ivec3 nextCell = probeCellOf(field, ray.origin + tMin * ray.direction);
-        if (tMin - before < 0.3 * field.voxelMetres || nextCell == cell) break;
-        cell = nextCell;
+        tCell = max(tCell, tMin);
+        if (!nextFieldCell(field, ray, tCell, cell)) break;
     }
     if (hit.state != kFieldHit) hit.t = hit.state == kFieldMiss ? ray.tMax : tMin;
     return hit;
