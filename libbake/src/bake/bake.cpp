@@ -1,0 +1,302 @@
+// bakeProbes: probe by probe, tracing on this thread, small layers and writing on others.
+#include <fmt/format.h>
+#include <tbb/task_group.h>
+
+#include <atomic>
+#include <chrono>
+#include <mutex>
+#include <pfvox/bake.hpp>
+#include <pfvox/gpu_scene.hpp>
+#include <pfvox/probe_file.hpp>
+
+#include "bake/bake_settings.hpp"
+#include "bake/content_hash.hpp"
+#include "bake/probe_maps.hpp"
+#include "bake/probe_placement.hpp"
+#include "bake/surface_samples.hpp"
+
+namespace pfvox {
+
+namespace {
+
+using namespace bake;
+using Clock = std::chrono::steady_clock;
+
+/// Probes whose maps are being made or written while the device goes on: each holds its traced maps.
+constexpr int kMostInFlight = 4;
+
+double secondsSince(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// What the threads behind the device have done.
+struct Background {
+    tbb::task_group tasks;
+    std::atomic<int> inFlight{0};
+    std::mutex mutex;  ///< of all below
+    std::optional<Error> error;
+    double smallLayersMs = 0.0;
+    double writeMs = 0.0;
+
+    ~Background() { tasks.wait(); }
+};
+
+class Baker {
+  public:
+    Baker(gpu::Device& device, const LoadedScene& scene, const BakeSettings& settings, BakeObserver& observer,
+          Diagnostics& diagnostics)
+        : device_(device), scene_(scene), settings_(settings), observer_(observer), diagnostics_(diagnostics),
+          info_(fieldInfo(scene, settings, device.info())), models_(placedModels(scene)), solids_(models_) {}
+
+    Result<BakeReport> run(const std::filesystem::path& output) {
+        const ContentKey key = bakeContentKey(scene_, settings_, device_.info());
+        if (!settings_.force && holds(output, key)) {
+            report_.upToDate = true;
+            return report_;
+        }
+        warnAboutGrid();
+        const EmitterList emitters = makeEmitters(models_);
+        report_.emitterFaces = emitters.faces.size();
+        PFVOX_TRY(const gpu::Scene, gpuScene, gpu::Scene::build(device_, gpu::partsOf(scene_), diagnostics_));
+        PFVOX_TRY(ProbeTracer, tracer,
+                  ProbeTracer::create(device_, gpuScene,
+                                      {.sun = scene_.scene.sun,
+                                       .sky = scene_.scene.sky,
+                                       .emitters = emitters,
+                                       .hasGlass = hasGlass(),
+                                       .depth = info_.depth},
+                                      settings_));
+        const ProbeWriteSettings write{.encode = {.zstdLevel = settings_.zstdLevel, .contentKey = key},
+                                       .resume = settings_.resume};
+        PFVOX_TRY(ProbeFileWriter, writer, ProbeFileWriter::open(output, info_, write, diagnostics_));
+        PFVOX_CHECK(bakeAll(tracer, writer));
+        PFVOX_TRY(const std::uint64_t, capped, tracer.cappedRays());
+        report_.cappedRays = capped;
+        PFVOX_CHECK(finish(writer, output));
+        report_.totalMs = 1e3 * secondsSince(started_);
+        return report_;
+    }
+
+  private:
+    // --- Before ---
+
+    static bool holds(const std::filesystem::path& output, const ContentKey& key) {
+        std::error_code ignored;
+        if (!std::filesystem::exists(output, ignored)) return false;
+        DiagnosticList unused;
+        const auto reader = ProbeFileReader::open(output, Limits{}, unused);
+        return reader && reader->contentKey() == key;
+    }
+
+    bool hasGlass() const {
+        for (const PlacedModel& placed : models_)
+            for (const Material& m : placed.asset->materials)
+                if ((m.type == MaterialType::Glass || m.type == MaterialType::Media || m.type == MaterialType::Blend) &&
+                    m.transparency > 0.0f && m.emissionStrength == 0.0f)
+                    return true;
+        return false;
+    }
+
+    void warnAboutGrid() {
+        if (scene_.bounds.empty()) return;
+        const glm::dvec3 low(info_.grid.start - 0.5f * info_.grid.step);
+        const glm::dvec3 high = low + glm::dvec3(info_.grid.step) * glm::dvec3(info_.grid.counts);
+        const glm::dvec3 outside = glm::max(low - scene_.bounds.min, scene_.bounds.max - high);
+        const double most = std::max({outside.x, outside.y, outside.z});
+        if (most <= 1e-6) return;
+        diagnostics_.warn("bake-grid-outside",
+                          fmt::format("models reach {:.3g} m beyond half a step around the probe grid: light there is "
+                                      "that of the nearest probes",
+                                      most));
+    }
+
+    // --- Probes ---
+
+    Result<void> bakeAll(ProbeTracer& tracer, ProbeFileWriter& writer) {
+        const ContentKey field = fieldHash(info_, settings_);
+        Background background;
+        report_.probes = info_.range.size();
+        for (std::uint32_t probe = info_.range.first; probe < info_.range.end; ++probe) {
+            const ContentKey input = probeHash(field, probe);
+            if (settings_.resume && writer.reuse(probe, input)) {
+                ++report_.reused;
+                PFVOX_CHECK(pieceDone());
+                continue;
+            }
+            PFVOX_CHECK(bakeOne(probe, input, tracer, writer, background));
+            ++baked_;
+            PFVOX_CHECK(pieceDone());
+            PFVOX_CHECK(errorOf(background));
+        }
+        background.tasks.wait();
+        PFVOX_CHECK(errorOf(background));
+        report_.smallLayersMs = background.smallLayersMs;
+        report_.writeMs = background.writeMs;
+        if (surfaceTexels_ != 0)
+            report_.meanSamples = static_cast<double>(samples_) / static_cast<double>(surfaceTexels_);
+        return {};
+    }
+
+    static Result<void> errorOf(Background& background) {
+        const std::scoped_lock lock(background.mutex);
+        if (background.error) return tl::make_unexpected(*background.error);
+        return {};
+    }
+
+    Result<void> bakeOne(std::uint32_t probe, const ContentKey& input, ProbeTracer& tracer, ProbeFileWriter& writer,
+                         Background& background) {
+        const Placement placement = placeProbe(solids_, info_.grid, probe, settings_.relocate);
+        ProbeRecord record{.offset = placement.offset, .state = placement.state};
+        if (!record.isActive()) return writer.append(probe, {.record = record, .inputHash = input});
+        const glm::vec3 position = info_.grid.pointOf(probe) + placement.offset;
+        PFVOX_TRY(auto, seen, tracer.see(position, workOf(report_.geometry)));
+        PFVOX_TRY(const TileSums, sums, tracer.light(probe, position, seen, workOf(report_.light)));
+        record.error = static_cast<float>(sums.meanError());
+        record.cappedTileShare = static_cast<float>(sums.cappedTileShare());
+        samples_ += sums.samples();
+        surfaceTexels_ += sums.surfaceTexels();
+        auto traced = std::make_shared<TracedProbe>(
+            TracedProbe{.seen = std::move(seen), .light = sums.means(), .edges = tracer.edges()});
+        while (background.inFlight.load() >= kMostInFlight) background.tasks.wait();
+        ++background.inFlight;
+        background.tasks.run([this, probe, input, record, traced, &writer, &background] {
+            const Result<void> written = writeOne(probe, input, record, *traced, writer, background);
+            if (!written) {
+                const std::scoped_lock lock(background.mutex);
+                if (!background.error) background.error = written.error();
+            }
+            --background.inFlight;
+        });
+        return {};
+    }
+
+    Result<void> writeOne(std::uint32_t probe, const ContentKey& input, const ProbeRecord& record,
+                          const TracedProbe& traced, ProbeFileWriter& writer, Background& background) const {
+        const auto began = Clock::now();
+        ProbeData data = makeMaps(traced, info_.resolution, info_.grid.momentRange());
+        const double mapsMs = 1e3 * secondsSince(began);
+        data.record = record;
+        data.inputHash = input;
+        PFVOX_CHECK(writer.append(probe, data));
+        const std::scoped_lock lock(background.mutex);
+        background.smallLayersMs += mapsMs;
+        background.writeMs += 1e3 * secondsSince(began) - mapsMs;
+        return {};
+    }
+
+    // --- What the observer hears ---
+
+    WorkDone workOf(BakePass& sum) {
+        return [this, &sum](const BakePass& piece) {
+            sum.rays += piece.rays;
+            sum.gpuMs += piece.gpuMs;
+            return pieceDone();
+        };
+    }
+
+    Result<void> pieceDone() {
+        BakeProgress progress{.probes = info_.range.size(),
+                              .probesDone = baked_ + report_.reused,
+                              .probesReused = report_.reused,
+                              .rays = report_.geometry.rays + report_.light.rays,
+                              .elapsedSeconds = secondsSince(started_),
+                              .gpuMs = report_.geometry.gpuMs + report_.light.gpuMs,
+                              .secondsLeft = std::nullopt};
+        if (baked_ != 0)
+            progress.secondsLeft = progress.elapsedSeconds / static_cast<double>(baked_) *
+                                   static_cast<double>(progress.probes - progress.probesDone);
+        observer_.progress(progress);
+        if (!observer_.stopRequested()) return {};
+        return fail(ErrorCode::Cancelled, "stopped; what is finished is kept in the journal, and resuming takes it");
+    }
+
+    // --- After ---
+
+    Result<void> finish(ProbeFileWriter& writer, const std::filesystem::path& output) {
+        std::vector<ProbeRecord> records;
+        for (std::uint32_t probe = info_.range.first; probe < info_.range.end; ++probe) {
+            PFVOX_TRY(const ProbeData, data, writer.readProbe(probe));
+            records.push_back(data.record);
+        }
+        count(records);
+        std::optional<ProximityGrid> grid;
+        if (settings_.proximity && info_.isWhole() && info_.resolution.depth != 0) {
+            PFVOX_TRY(ProximityGrid, made, makeProximity(writer, records));
+            grid = std::move(made);
+        }
+        const auto began = Clock::now();
+        PFVOX_CHECK(writer.finish(grid));
+        report_.writeMs += 1e3 * secondsSince(began);
+        std::error_code ignored;
+        report_.fileBytes = std::filesystem::file_size(output, ignored);
+        return {};
+    }
+
+    void count(std::span<const ProbeRecord> records) {
+        for (const ProbeRecord& record : records) {
+            if (!record.isActive()) {
+                ++report_.inactive;
+                continue;
+            }
+            ++report_.active;
+            if (record.state == ProbeState::Relocated) ++report_.relocated;
+            const auto error = static_cast<double>(record.error);
+            report_.meanError += error;
+            report_.maxError = std::max(report_.maxError, error);
+            report_.cappedTileShare += static_cast<double>(record.cappedTileShare);
+        }
+        if (report_.active == 0) return;
+        report_.meanError /= static_cast<double>(report_.active);
+        report_.cappedTileShare /= static_cast<double>(report_.active);
+    }
+
+    Result<ProximityGrid> makeProximity(const ProbeFileWriter& writer, std::span<const ProbeRecord> records) {
+        const auto began = Clock::now();
+        const ProximityGrid shape = proximityShape(info_.grid, scene_.scene.probes.proximityCells);
+        const CellSurfaces surfaces = sortIntoCells(surfaceSamples(models_, shape), shape);
+        const auto depthNormal = [&](std::uint32_t probe) -> Result<std::vector<std::uint32_t>> {
+            PFVOX_TRY(ProbeData, data, writer.readProbe(probe));
+            return std::move(data.depthNormal);
+        };
+        PFVOX_TRY(ProximityBuild, built,
+                  buildProximityGrid({.info = info_,
+                                      .records = records,
+                                      .depthNormal = depthNormal,
+                                      .shape = shape,
+                                      .surfaces = surfaces}));
+        report_.proximity = built.report;
+        report_.proximityMs = 1e3 * secondsSince(began);
+        if (built.report.uncoveredCells != 0) {
+            diagnostics_.note("bake-uncovered-cells",
+                              fmt::format("{} of {} cells with surface are seen by no probe: light there comes from "
+                                          "the irradiance maps",
+                                          built.report.uncoveredCells, built.report.surfaceCells));
+        }
+        return std::move(built.grid);
+    }
+
+    Clock::time_point started_ = Clock::now();
+    gpu::Device& device_;
+    const LoadedScene& scene_;
+    const BakeSettings& settings_;
+    BakeObserver& observer_;
+    Diagnostics& diagnostics_;
+    ProbeFieldInfo info_;
+    std::vector<PlacedModel> models_;
+    SolidQuery solids_;
+    BakeReport report_;
+    std::uint64_t baked_ = 0;
+    std::uint64_t samples_ = 0;
+    std::uint64_t surfaceTexels_ = 0;
+};
+
+}  // namespace
+
+Result<BakeReport> bakeProbes(gpu::Device& device, const LoadedScene& scene, const BakeSettings& settings,
+                              const std::filesystem::path& output, BakeObserver& observer,
+                              Diagnostics& diagnostics) {
+    PFVOX_CHECK(checkSettings(settings, scene.probes));
+    return Baker(device, scene, settings, observer, diagnostics).run(output);
+}
+
+}  // namespace pfvox

@@ -1,0 +1,60 @@
+#include "bake/bake_settings.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "bake/probe_tracer.hpp"
+#include "shared/probe_maths.glsl.h"
+
+namespace pfvox::bake {
+
+namespace {
+
+Result<void> checkResolution(const ProbeResolution& resolution) {
+    if (resolution.edgeOf(ProbeLayer::DepthNormal) % shared::kMinDepthBlock != 0)
+        return fail(ErrorCode::BadValue,
+                    fmt::format("depth maps of {} texels: the edge is a multiple of 16", resolution.depth));
+    for (const ProbeLayer layer : {ProbeLayer::DepthNormal, ProbeLayer::Light, ProbeLayer::Irradiance, ProbeLayer::Moments})
+        if (resolution.edgeOf(layer) > kMaxProbeEdge)
+            return fail(ErrorCode::BadValue, fmt::format("{} maps have at most {} texels along an edge", toString(layer), kMaxProbeEdge));
+    if (resolution.bytesPerProbe() == 0) return fail(ErrorCode::BadValue, "a probe has at least one map");
+    const TracedEdges edges = tracedEdges(resolution);
+    if (edges.light % shared::kTileEdge != 0)
+        return fail(ErrorCode::BadValue, fmt::format("light maps of {} texels: the edge is a multiple of 8", edges.light));
+    if (edges.depth % edges.light != 0 || edges.depth / edges.light > shared::kMaxBlockEdge)
+        return fail(ErrorCode::BadValue,
+                    fmt::format("depth maps of {} and light maps of {} texels: depth is 1, 2, 3 or 4 times light",
+                                edges.depth, edges.light));
+    return {};
+}
+
+bool isBatches(std::uint32_t samples) {
+    return samples != 0 && samples % shared::kBatchSamples == 0;
+}
+
+}  // namespace
+
+Result<void> checkSettings(const BakeSettings& settings, const ProbeGrid& grid) {
+    PFVOX_CHECK(checkResolution(settings.resolution));
+    if (!isBatches(settings.minSamples) || !isBatches(settings.maxSamples) ||
+        settings.maxSamples < settings.minSamples || settings.maxSamples > (1u << 24))
+        return fail(ErrorCode::BadValue,
+                    fmt::format("samples from {} to {}: both are multiples of 16, the first not above the second",
+                                settings.minSamples, settings.maxSamples));
+    if (!(settings.noiseTarget >= 0.0f) || !std::isfinite(settings.noiseTarget))
+        return fail(ErrorCode::BadValue, "the noise target is a number from 0");
+    if (!(settings.noiseFloor > 0.0f) || !std::isfinite(settings.noiseFloor))
+        return fail(ErrorCode::BadValue, "the noise floor is a number above 0");
+    if (!(settings.dispatchSeconds > 0.0))
+        return fail(ErrorCode::BadValue, "the seconds of a dispatch are a number above 0");
+    if (settings.zstdLevel < 1 || settings.zstdLevel > 19)
+        return fail(ErrorCode::BadValue, fmt::format("zstd level {}: it is 1 to 19", settings.zstdLevel));
+    if (settings.range && (settings.range->first >= settings.range->end || settings.range->end > grid.probeCount()))
+        return fail(ErrorCode::BadValue,
+                    fmt::format("probes {} to {}: a range is not empty and within the grid's {} probes",
+                                settings.range->first, settings.range->end, grid.probeCount()));
+    return {};
+}
+
+}  // namespace pfvox::bake

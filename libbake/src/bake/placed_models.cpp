@@ -1,0 +1,34 @@
+#include "bake/placed_models.hpp"
+
+#include <cmath>
+
+namespace pfvox::bake {
+
+namespace {
+
+bool isFinite(const Affine& m) {
+    for (int column = 0; column < 4; ++column)
+        for (int row = 0; row < 3; ++row)
+            if (!(std::abs(m[column][row]) < 1e30)) return false;
+    return true;
+}
+
+}  // namespace
+
+std::vector<PlacedModel> placedModels(const LoadedScene& scene) {
+    std::vector<PlacedModel> placed;
+    for (const PlacedAsset& part : scene.parts) {
+        for (const Instance& instance : part.asset->instances) {
+            if (isHidden(*part.asset, instance) || instance.model >= part.asset->models.size()) continue;
+            const OctreeModel& model = part.asset->models[instance.model];
+            if (model.regions.empty()) continue;
+            const Affine world = compose(part.worldFromAsset, instance.worldFromModel);
+            const Affine inverse{glm::inverse(glm::dmat4{world})};
+            if (!isFinite(inverse)) continue;
+            placed.push_back({&model, part.asset.get(), world, inverse});
+        }
+    }
+    return placed;
+}
+
+}  // namespace pfvox::bake

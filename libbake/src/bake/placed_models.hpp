@@ -1,0 +1,19 @@
+// The visible instances of a loaded scene, flat: what placement, emitters and surface samples go through.
+#pragma once
+
+#include <pfvox/scene.hpp>
+#include <vector>
+
+namespace pfvox::bake {
+
+/// Not empty, not hidden, of a transform that can be inverted.
+struct PlacedModel {
+    const OctreeModel* model = nullptr;
+    const OctreeAsset* asset = nullptr;
+    Affine worldFromModel = identityAffine();  ///< voxels to metres
+    Affine modelFromWorld = identityAffine();
+};
+
+std::vector<PlacedModel> placedModels(const LoadedScene& scene);
+
+}  // namespace pfvox::bake

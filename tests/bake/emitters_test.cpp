@@ -1,0 +1,97 @@
+// Exposed faces and the list of emitters.
+#include <map>
+
+#include "bake/emitters.hpp"
+#include "bake/exposed_faces.hpp"
+#include "bake_fixture.hpp"
+
+namespace pfvox::test {
+namespace {
+
+std::size_t exposedFaces(const OctreeAsset& asset) {
+    const std::vector<bool> all(asset.materials.size(), true);
+    std::size_t count = 0;
+    bake::forEachExposedFace(asset.models[0], {.wanted = all, .hides = all}, [&](const bake::VoxelFace&) { ++count; });
+    return count;
+}
+
+TEST(ExposedFaces, AreThoseWithoutNeighbour) {
+    Random random(5);
+    for (const double density : {0.05, 0.5, 0.95}) {
+        const VoxelModel model = randomModel(random, 20, density, 3);
+        const OctreeAsset asset = build(assetOf(randomModel(random, 20, density, 3), {grey(1), grey(2), grey(3)}));
+        const OctreeModel& octree = asset.models[0];
+        std::size_t expected = 0;
+        for (int i = 0; i < 20 * 20 * 20; ++i) {
+            const glm::ivec3 p(i % 20, i / 20 % 20, i / 400);
+            if (!octree.at(p)) continue;
+            for (int axis = 0; axis < 3; ++axis) {
+                for (const int side : {-1, 1}) {
+                    glm::ivec3 next = p;
+                    next[axis] += side;
+                    expected += octree.at(next) ? 0u : 1u;
+                }
+            }
+        }
+        EXPECT_EQ(exposedFaces(asset), expected);
+    }
+}
+
+TEST(ExposedFaces, ReachOverRegionsAndLargeLeaves) {
+    VoxelModel model;
+    fillBox(model, {{250, 0, 0}, {266, 16, 16}}, [](glm::ivec3) { return MaterialIndex{0}; });
+    EXPECT_EQ(exposedFaces(build(assetOf(std::move(model), {grey(1)}))), 6u * 16u * 16u);
+}
+
+TEST(Emitters, HaveTheirPlaceAreaAndDirection) {
+    VoxelModel model;
+    model.set({2, 3, 4}, 0);
+    Affine mirrored{0.5};
+    mirrored[0] *= -1.0;
+    for (const Affine& world : {identityAffine(), mirrored}) {
+        const LoadedScene scene = sceneOf(assetOf(model, {grey(255, 2.0)}), world);
+        const auto models = bake::placedModels(scene);
+        const bake::EmitterList list = bake::makeEmitters(models);
+        ASSERT_EQ(list.faces.size(), 6u);
+        const glm::dvec3 middle = 0.5 * (scene.bounds.min + scene.bounds.max);
+        const double edge = scene.bounds.max.x - scene.bounds.min.x;
+        EXPECT_NEAR(static_cast<double>(list.power), 6.0 * edge * edge * 2.0, 1e-5);
+        for (const shared::EmitterFace& face : list.faces) {
+            const glm::dvec3 outward(glm::cross(face.edgeU, face.edgeV));
+            EXPECT_NEAR(glm::length(outward), edge * edge, 1e-6);
+            const glm::dvec3 centre = glm::dvec3(face.corner) + 0.5 * glm::dvec3(face.edgeU + face.edgeV) - middle;
+            EXPECT_NEAR(glm::dot(glm::normalize(outward), centre), 0.5 * edge, 1e-6);
+            EXPECT_NEAR(static_cast<double>(face.offset), 0.01 * edge, 1e-7);
+        }
+    }
+}
+
+TEST(Emitters, ThatAreCoveredAreNotThere) {
+    VoxelModel model;
+    fillBox(model, {{0, 0, 0}, {3, 3, 3}}, [](glm::ivec3 p) { return MaterialIndex{p == glm::ivec3(1) ? std::uint16_t{1} : std::uint16_t{0}}; });
+    EXPECT_TRUE(bake::makeEmitters(bake::placedModels(sceneOf(assetOf(model, {grey(9), grey(255, 1.0)})))).faces.empty());
+    Material glass = grey(255);
+    glass.type = MaterialType::Glass;
+    glass.transparency = 0.5f;
+    EXPECT_EQ(bake::makeEmitters(bake::placedModels(sceneOf(assetOf(model, {glass, grey(255, 1.0)})))).faces.size(), 6u);
+}
+
+TEST(AliasTable, GivesEachEntryItsShare) {
+    Random random(3);
+    std::vector<double> weights;
+    for (int i = 0; i < 500; ++i) weights.push_back(i % 7 == 0 ? 100.0 * random.uniform(0.0, 1.0) : random.uniform(0.01, 1.0));
+    std::vector<shared::EmitterFace> faces(weights.size());
+    bake::makeAliasTable(weights, faces);
+    double sum = 0.0;
+    for (const double w : weights) sum += w;
+    std::vector<double> share(weights.size());
+    for (std::size_t i = 0; i < faces.size(); ++i) {
+        const auto threshold = static_cast<double>(faces[i].threshold);
+        share[i] += threshold / 500.0;
+        share[faces[i].alias] += (1.0 - threshold) / 500.0;
+    }
+    for (std::size_t i = 0; i < weights.size(); ++i) EXPECT_NEAR(share[i], weights[i] / sum, 1e-7);
+}
+
+}  // namespace
+}  // namespace pfvox::test
