@@ -15,6 +15,8 @@ Command makeValidateCommand(CLI::App& tool);
 Command makeCompareCommand(CLI::App& tool);
 /// Shards to one PF_PROBE file.
 Command makeMergeCommand(CLI::App& tool);
+/// Probes against path tracing.
+Command makeVerifyCommand(CLI::App& tool);
 
 /// Extension of the files that this tool writes.
 inline constexpr const char* kPfProbeExtension = ".pf_probe";

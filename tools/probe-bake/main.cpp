@@ -26,7 +26,8 @@ HelpText helpText() {
             .usage = {"probe-bake [bake] [options] <scene.toml | file.pf_vox> -o <file.pf_probe>",
                       "probe-bake info [options] <file.pf_probe>...", "probe-bake validate [options] <file.pf_probe>...",
                       "probe-bake compare [options] <a.pf_probe> <b.pf_probe>",
-                      "probe-bake merge [options] <shard.pf_probe>... -o <file.pf_probe>"},
+                      "probe-bake merge [options] <shard.pf_probe>... -o <file.pf_probe>",
+                      "probe-bake verify [options] <scene.toml | file.pf_vox> <file.pf_probe>"},
             .examples = {{"probe-bake scene.toml -o scene.pf_probe", "bake the scene's grid"},
                          {"probe-bake info hall.pf_probe", "what is in it"}}};
 }
@@ -38,7 +39,7 @@ ExitCode run(int argc, char** argv) {
     const auto tool = makeTool("probe-bake", helpText(), versionText());
     tool->require_subcommand(1);
     const std::array commands{makeBakeCommand(*tool), makeInfoCommand(*tool), makeValidateCommand(*tool), makeCompareCommand(*tool),
-                              makeMergeCommand(*tool)};
+                              makeMergeCommand(*tool), makeVerifyCommand(*tool)};
     if (const auto exitCode = parseCommandLine(*tool, withDefaultCommand(*tool, "bake", argc, argv))) {
         return *exitCode;
     }
