@@ -1,6 +1,8 @@
 // Which tiles go on, and what comes out of their sums.
 #include "bake/tile_sums.hpp"
 
+#include <gtest/gtest.h>
+
 #include <cmath>
 
 #include "support/procedural.hpp"
