@@ -165,6 +165,50 @@ void writeCutFiles(const std::filesystem::path& folder) {
     std::filesystem::remove(whole);
 }
 
+void writeSelfCycles(const std::filesystem::path& folder) {
+    constexpr int kFiles = 81;
+    std::filesystem::create_directories(folder);
+    for (int i = 0; i < kFiles; ++i) {
+        VoxFileWriter writer(folder / numbered("cycle", i));
+        writer.addModel({20, 21, 22}, building({20, 21, 22}, i % 12));
+        writer.finishWithSelfCycle();
+    }
+}
+
+void writeHalfPlanet(const std::filesystem::path& file) {
+    constexpr int kRadius = 128;
+    constexpr int kInnerSquared = 14'090;  // a crust of 9.3 voxels
+    std::vector<VoxVoxel> voxels;
+    for (int z = 0; z < kRadius; ++z)
+        for (int y = 0; y < kModelEdge; ++y)
+            for (int x = 0; x < kModelEdge; ++x) {
+                const glm::ivec3 p{x - kRadius, y - kRadius, z};
+                const int distance = p.x * p.x + p.y * p.y + p.z * p.z;
+                if (distance >= kRadius * kRadius || distance < kInnerSquared) continue;
+                voxels.push_back({static_cast<std::uint8_t>(x), static_cast<std::uint8_t>(y),
+                                  static_cast<std::uint8_t>(z), colorAt(x, y, z)});
+            }
+    VoxFileWriter writer(file);
+    writer.addInstance(writer.addModel(glm::ivec3{kModelEdge}, voxels), {0, 0, 0});
+    writer.finish();
+}
+
+void writeMonument(const std::filesystem::path& file) {
+    constexpr int kBase = 118;
+    constexpr int kHeight = 126;
+    std::vector<VoxVoxel> voxels;
+    for (int z = 0; z < kHeight; ++z) {
+        const int inset = z / 6 * 2;
+        for (int y = inset; y < kBase - inset; ++y)
+            for (int x = inset; x < kBase - inset; ++x)
+                voxels.push_back({static_cast<std::uint8_t>(x), static_cast<std::uint8_t>(y),
+                                  static_cast<std::uint8_t>(z), colorAt(4 * x, 4 * y, z)});
+    }
+    VoxFileWriter writer(file);
+    writer.addInstance(writer.addModel({kBase, kBase, kHeight}, voxels), {0, 0, 0});
+    writer.finish();
+}
+
 void writeLiar(const std::filesystem::path& file) {
     // The size is a lie, the rest is in order: one voxel in a model.
     const VoxVoxel voxel{1, 2, 3, 4};

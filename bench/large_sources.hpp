@@ -15,9 +15,19 @@ void writeInstances(const std::filesystem::path& file, int count);
 void writeSmallFiles(const std::filesystem::path& folder);
 /// One small file, cut at 100 places.
 void writeCutFiles(const std::filesystem::path& folder);
+/// 81 files whose root node is its own child.
+void writeSelfCycles(const std::filesystem::path& folder);
+/// Half a ball of about 890,000 voxels in one model of 256^3: the size of a well-known planet.
+void writeHalfPlanet(const std::filesystem::path& file);
+/// About 848,000 voxels in one model, a stack of solid steps: the size of a well-known monument.
+void writeMonument(const std::filesystem::path& file);
 /// 64 bytes that claim a model of 65536 x 65536.
 void writeLiar(const std::filesystem::path& file);
 /// An OpenVDB fog volume: a ball of radius 400, 268 million active voxels, most of them in tiles.
 void writeFogBall(const std::filesystem::path& file);
+/// An OpenVDB mask with two voxels 10^9 apart.
+void writeFarApart(const std::filesystem::path& file);
+/// An OpenVDB mask: a shell one voxel thick with a diameter of 4000, 50 million voxels in 4096^3.
+void writeHugeShell(const std::filesystem::path& file);
 
 }  // namespace pfvox::bench

@@ -1,6 +1,9 @@
 #include <openvdb/io/File.h>
 #include <openvdb/openvdb.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "large_sources.hpp"
 
 namespace pfvox::bench {
@@ -30,6 +33,37 @@ void writeFogBall(const std::filesystem::path& file) {
                 }
             }
     grid->pruneGrid();
+    openvdb::io::File(file.string()).write({grid});
+}
+
+void writeFarApart(const std::filesystem::path& file) {
+    openvdb::initialize();
+    auto grid = openvdb::MaskGrid::create();
+    grid->setName("far");
+    grid->tree().setValueOn(openvdb::Coord(0, 0, 0));
+    grid->tree().setValueOn(openvdb::Coord(1'000'000'000, 0, 0));
+    openvdb::io::File(file.string()).write({grid});
+}
+
+void writeHugeShell(const std::filesystem::path& file) {
+    constexpr double kInner = 1999.5;
+    constexpr double kOuter = 2000.5;
+    constexpr int kReach = 2000;
+    openvdb::initialize();
+    auto grid = openvdb::MaskGrid::create();
+    grid->setName("shell");
+    auto accessor = grid->getAccessor();
+    for (int x = -kReach; x <= kReach; ++x)
+        for (int y = -kReach; y <= kReach; ++y) {
+            const double across = double(x) * x + double(y) * y;
+            if (across > kOuter * kOuter) continue;
+            const int first = static_cast<int>(std::ceil(std::sqrt(std::max(0.0, kInner * kInner - across))));
+            const int last = static_cast<int>(std::sqrt(kOuter * kOuter - across));
+            for (int z = first; z <= last; ++z) {
+                accessor.setValueOn(openvdb::Coord(x, y, z));
+                accessor.setValueOn(openvdb::Coord(x, y, -z));
+            }
+        }
     openvdb::io::File(file.string()).write({grid});
 }
 

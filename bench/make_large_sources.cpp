@@ -1,4 +1,4 @@
-// Writes the sources that bench/run-import converts: make_large_sources <folder>. About 600 MB; what is there
+// Writes the sources that bench/run-import converts: make_large_sources <folder>. About 700 MB; what is there
 // already is left alone.
 #include <cstdio>
 #include <exception>
@@ -32,10 +32,15 @@ void makeAll(const fs::path& folder) {
     make(folder, "small", writeSmallFiles);
     make(folder, "instances_900.vox", [](const fs::path& file) { writeInstances(file, 900); });
     make(folder, "city_10000.vox", [](const fs::path& file) { writeInstances(file, 10'000); });
+    make(folder, "self_cycles", writeSelfCycles);
+    make(folder, "half_planet.vox", writeHalfPlanet);
+    make(folder, "monument.vox", writeMonument);
     make(folder, "terrain_shell.vox", writeTerrainShell);
     make(folder, "solid_terrain.vox", writeSolidTerrain);
 #ifdef PFVOX_BENCH_WITH_OPENVDB
     make(folder, "fog_r400.vdb", writeFogBall);
+    make(folder, "far_apart.vdb", writeFarApart);
+    make(folder, "huge_shell.vdb", writeHugeShell);
 #endif
 }
 

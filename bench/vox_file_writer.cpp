@@ -80,6 +80,13 @@ void VoxFileWriter::writePalette() {
     }
 }
 
+void VoxFileWriter::finishWithSelfCycle() {
+    instances_.clear();
+    chunk("nTRN", 28);
+    for (const int v : {0, 0, 0, -1, -1, 1, 0}) int32(v);
+    finish();
+}
+
 void VoxFileWriter::finish() {
     if (!instances_.empty()) writeGraph();
     writePalette();

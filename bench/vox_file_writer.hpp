@@ -30,6 +30,8 @@ class VoxFileWriter {
     void addInstance(int model, glm::ivec3 translation);
     /// Writes the scene graph and the sizes that were not known before.
     void finish();
+    /// The same with a graph that is one transform node, which is its own child: real files have such.
+    void finishWithSelfCycle();
 
   private:
     void int32(std::int32_t value);

@@ -5,6 +5,7 @@
 
 #include "io/files.hpp"
 #include "io/hash.hpp"
+#include "octree/lanes.hpp"
 
 namespace pfvox {
 
@@ -37,7 +38,7 @@ void count(const OctreeAsset& asset, ConvertReport& report) {
         for (const OctreeRegion& region : model.regions) {
             report.nodes += region.tree.nodes.size();
             for (const std::uint32_t d : region.tree.nodes) {
-                report.leaves += static_cast<std::uint64_t>(std::popcount(node::leafMask(d)));
+                report.leaves += octree::kBitCount[node::leafMask(d)];
             }
         }
     }
@@ -72,7 +73,7 @@ Result<std::vector<std::byte>> convertBytes(std::span<const std::byte> bytes,
         compactMaterials(asset);
         report.importSeconds = watch.lap();
         if (settings.hollow) {
-            hollowSolids(asset);
+            report.hollowedVoxels = hollowSolids(asset).hiddenVoxels;
             compactMaterials(asset);  // some were only inside
         }
         return buildOctrees(asset, limits, settings.build);

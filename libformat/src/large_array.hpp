@@ -15,32 +15,44 @@
 
 namespace pfvox {
 
+inline constexpr std::size_t kHugePageBytes = std::size_t{2} << 20;
+
+/// Small blocks need no place of their own among huge pages.
+constexpr std::align_val_t largeAlignment(std::size_t bytes) {
+    return std::align_val_t{bytes >= kHugePageBytes ? kHugePageBytes : 64};
+}
+
+/// Uninitialised memory, to be given back with freeLarge() and the same number of bytes.
+inline void* allocateLarge(std::size_t bytes) {
+    void* memory = ::operator new(bytes, largeAlignment(bytes));
+#if defined(__linux__)
+    // Advice only: where it is not taken, the memory is as good as any.
+    if (bytes >= kHugePageBytes) madvise(memory, bytes, MADV_HUGEPAGE);
+#endif
+    return memory;
+}
+
+inline void freeLarge(void* memory, std::size_t bytes) {
+    ::operator delete(memory, largeAlignment(bytes));
+}
+
 template <class T>
 class LargeArray {
     static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>);
 
   public:
     LargeArray() = default;
-    explicit LargeArray(std::size_t count) : data_(allocate(count * sizeof(T))) {}
+    explicit LargeArray(std::size_t count)
+        : data_(static_cast<T*>(allocateLarge(count * sizeof(T))), Free{count * sizeof(T)}) {}
 
     T* data() { return data_.get(); }
     T& operator[](std::size_t i) { return data_.get()[i]; }
 
   private:
-    static constexpr std::align_val_t kHugePage{std::size_t{2} << 20};
-
     struct Free {
-        void operator()(T* p) const { ::operator delete(static_cast<void*>(p), kHugePage); }
+        std::size_t bytes = 0;
+        void operator()(T* p) const { freeLarge(p, bytes); }
     };
-
-    static T* allocate(std::size_t bytes) {
-        void* memory = ::operator new(bytes, kHugePage);
-#if defined(__linux__)
-        // Advice only: where it is not taken, the memory is as good as any.
-        if (bytes >= static_cast<std::size_t>(kHugePage)) madvise(memory, bytes, MADV_HUGEPAGE);
-#endif
-        return static_cast<T*>(memory);
-    }
 
     std::unique_ptr<T, Free> data_;
 };

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <tuple>
+#include <utility>
 
 namespace pfvox {
 
@@ -77,37 +78,39 @@ class SliceSorter {
         }
         // Neighbours in a list mostly go to the same region, and a counter that was just written is slow to
         // read again: so both halves of the slice are worked on in turns, with counters of their own.
-        const std::size_t half = slice.size() / 2;
+        const std::size_t count = slice.size();
+        std::uint16_t* const regions = regions_.data();
+        for (std::size_t i = 0; i < count; ++i)
+            regions[i] = static_cast<std::uint16_t>(grid.regionOf(grid.local(slice[i])));
         next_.assign(2 * grid.count(), 0);
-        const auto counter = [&](const PackedVoxel& v, std::uint32_t lane) -> std::uint32_t& {
-            return next_[2 * grid.regionOf(grid.local(v)) + lane];
-        };
-        inTurns(slice, half, [&](const PackedVoxel& v, std::uint32_t lane) { ++counter(v, lane); });
+        std::uint32_t* const next = next_.data();
+        inTurns(count, [&](std::size_t i, std::size_t lane) { ++next[2 * std::size_t{regions[i]} + lane]; });
         std::uint32_t position = 0;
         for (std::size_t region = 0; region < grid.count(); ++region) {
             const std::uint32_t first = position;
-            for (std::size_t lane = 0; lane < 2; ++lane) {
-                const std::uint32_t count = next_[2 * region + lane];
-                next_[2 * region + lane] = position;
-                position += count;
-            }
+            for (std::size_t lane = 0; lane < 2; ++lane)
+                position += std::exchange(next[2 * region + lane], position);
             if (position != first) pieces.push_back({grid.coordOf(region), {out + first, position - first}});
         }
-        inTurns(slice, half, [&](const PackedVoxel& v, std::uint32_t lane) {
-            out[counter(v, lane)++] = {addressOf(grid.local(v)), v.material};
+        inTurns(count, [&](std::size_t i, std::size_t lane) {
+            const PackedVoxel v = slice[i];
+            out[next[2 * std::size_t{regions[i]} + lane]++] = {addressOf(grid.local(v)), v.material};
         });
     }
 
   private:
+    /// Calls visit(place, lane) for every place in the slice, for both of its halves in turns.
     template <class Visit>
-    static void inTurns(std::span<const PackedVoxel> slice, std::size_t half, const Visit& visit) {
+    static void inTurns(std::size_t count, const Visit& visit) {
+        const std::size_t half = count / 2;
         for (std::size_t i = 0; i < half; ++i) {
-            visit(slice[i], 0);
-            visit(slice[half + i], 1);
+            visit(i, 0);
+            visit(half + i, 1);
         }
-        if (slice.size() % 2 != 0) visit(slice.back(), 1);
+        if (count % 2 != 0) visit(count - 1, 1);
     }
 
+    std::vector<std::uint16_t> regions_ = std::vector<std::uint16_t>(kVoxelsPerSlice);  ///< of each voxel
     std::vector<std::uint32_t> next_;
 };
 

@@ -5,6 +5,8 @@
 
 #include <atomic>
 #include <filesystem>
+#include <chrono>
+#include <thread>
 #include <vector>
 
 #include "common/batch.hpp"
@@ -96,6 +98,50 @@ TEST(Batch, handsResultsOutInOrderForAnyNumberOfThreads) {
         ASSERT_EQ(order.size(), kCount);
         EXPECT_TRUE(std::ranges::is_sorted(order));
     }
+}
+
+TEST(Batch, commitsOverlapAndResultsStayInOrder) {
+    for (const int threads : {1, 4}) {
+        constexpr std::size_t kCount = 64;
+        std::atomic<int> now{0};
+        std::atomic<int> most{0};
+        std::vector<std::atomic<bool>> committed(kCount);
+        std::vector<std::size_t> order;
+        runBatch(kCount, {.threads = threads, .failFast = false},
+                 {.work = [&](std::size_t i) { return i % 5 != 0; },
+                  .commit =
+                      [&](std::size_t i) {
+                          const int inside = ++now;
+                          for (int seen = most; inside > seen && !most.compare_exchange_weak(seen, inside);) {
+                          }
+                          std::this_thread::sleep_for(std::chrono::milliseconds(5));
+                          committed[i] = true;
+                          --now;
+                          return true;
+                      },
+                  .finished =
+                      [&](std::size_t i) {
+                          EXPECT_EQ(committed[i], i % 5 != 0) << "a failed one has nothing to commit";
+                          order.push_back(i);
+                      }});
+        ASSERT_EQ(order.size(), kCount);
+        EXPECT_TRUE(std::ranges::is_sorted(order));
+        EXPECT_GT(most, 1) << "one thread that converts, several that wait";
+    }
+}
+
+TEST(Batch, failFastStopsAfterAFailedCommit) {
+    std::atomic<std::size_t> finished{0};
+    const std::size_t started = runBatch(10000, {.threads = 1, .failFast = true},
+                                         {.work =
+                                              [](std::size_t) {
+                                                  std::this_thread::sleep_for(std::chrono::milliseconds(1));
+                                                  return true;
+                                              },
+                                          .commit = [](std::size_t i) { return i != 4; },
+                                          .finished = [&](std::size_t) { ++finished; }});
+    EXPECT_LT(started, 10000u);
+    EXPECT_EQ(finished, started);
 }
 
 TEST(Batch, failFastStartsNothingAfterAFailure) {

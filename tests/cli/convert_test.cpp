@@ -4,6 +4,8 @@
 
 #include "cli/vox2pf_fixture.hpp"
 
+#include <nlohmann/json.hpp>
+
 namespace pfvox::test {
 
 using ::testing::AllOf;
@@ -203,6 +205,20 @@ class Vox2pfOctreeOptions : public Vox2pf {
         if (!exists("statue.vox")) addSource("statue.vox", "statue.vox");
     }
 };
+
+TEST_F(Vox2pf, jsonSaysHowLongWritingTookAndHowMuchWasHollowed) {
+    addSource("a.vox");
+    const auto lineOf = [&](std::vector<std::string> options) {
+        options.insert(options.begin(), {"a.vox", "-o", "a.pf_vox", "--json", "--force"});
+        return nlohmann::json::parse(run(options).out);
+    };
+    const auto plain = lineOf({});
+    EXPECT_GT(plain["seconds"]["write"].get<double>(), 0.0);
+    EXPECT_EQ(plain["hollowedVoxels"], 0);
+    const auto hollow = lineOf({"--hollow"});
+    EXPECT_GT(hollow["hollowedVoxels"], 0);
+    EXPECT_LT(hollow["hollowedVoxels"], hollow["voxels"]);
+}
 
 TEST_F(Vox2pfOctreeOptions, hollowIsRecordedAndCanBeTakenBack) {
     EXPECT_THAT(infoOf({"--hollow"}), HasSubstr(", hollow"));

@@ -27,6 +27,21 @@ TEST_F(Vox2pf, versionNamesTheFormats) {
     EXPECT_THAT(result.err, IsEmpty());
 }
 
+TEST_F(Vox2pf, withoutTheModuleOpenVdbFilesGetTheRemedyAndExitCodeFive) {
+    // A program by itself: no module in its tree. One that is installed on this machine is of another build.
+    const std::filesystem::path lonely = folder / "lonely" / "vox2pf";
+    std::filesystem::create_directories(lonely.parent_path());
+    std::filesystem::copy_file(PFVOX_VOX2PF, lonely);
+    addSource("a.vox");
+    writeText(folder / "a.vdb", std::string(" BDV\0\0\0\0\xe0\0\0\0", 12));
+    const ProcessResult vdb = runProcess({lonely.string(), "a.vdb", "-o", "a.pf_vox"}, {.folder = folder.path()});
+    EXPECT_EQ(vdb.exitCode, 5);
+    EXPECT_THAT(vdb.err, AllOf(HasSubstr("a.vdb"), HasSubstr("module"), HasSubstr("install")));
+    EXPECT_FALSE(exists("a.pf_vox"));
+    EXPECT_EQ(runProcess({lonely.string(), "a.vox", "-o", "a.pf_vox"}, {.folder = folder.path()}).exitCode, 0);
+    EXPECT_EQ(run({"a.vdb", "-o", "b.pf_vox"}).exitCode, 4) << "with its module it reads the file, which is broken";
+}
+
 TEST_F(Vox2pf, withoutArgumentsHelpGoesToStderr) {
     const ProcessResult result = run({});
     EXPECT_EQ(result.exitCode, 2);

@@ -49,21 +49,11 @@ void expectRoundTrip(const std::filesystem::path& source) {
     EXPECT_EQ(back->layers.size(), imported->layers.size());
 }
 
-/// The corpus without the files that the importer refuses (vox_corpus_test.cpp checks that it does).
-std::vector<std::filesystem::path> convertibleCorpus() {
-    std::vector<std::filesystem::path> files = test::corpusFiles("vox", ".vox");
-    std::erase_if(files, [](const std::filesystem::path& file) {
-        const std::string name = file.filename().string();
-        return name == "slab6_vox_test.vox" || name == "teardown.vox" || name == "not_a.vox";
-    });
-    return files;
-}
-
 class VoxExportRoundTrip : public testing::TestWithParam<std::filesystem::path> {};
 
 TEST_P(VoxExportRoundTrip, ShowsTheSameWorld) { expectRoundTrip(GetParam()); }
 
-INSTANTIATE_TEST_SUITE_P(Corpus, VoxExportRoundTrip, testing::ValuesIn(convertibleCorpus()));
+INSTANTIATE_TEST_SUITE_P(Corpus, VoxExportRoundTrip, testing::ValuesIn(test::convertibleVoxFiles()));
 INSTANTIATE_TEST_SUITE_P(OwnData, VoxExportRoundTrip, testing::ValuesIn([] {
                              std::vector<std::filesystem::path> files;
                              for (const char* name : {"courtyard.vox", "tree.vox", "lamp.vox", "statue.vox"}) {

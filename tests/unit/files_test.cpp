@@ -47,6 +47,22 @@ TEST_F(Files, WhatIsWrittenIsRead) {
     EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / "a b"), fs::directory_iterator{}), 1);
 }
 
+TEST_F(Files, AtomicFileIsInPlaceOnlyAfterItsCommit) {
+    const fs::path file = folder_ / "asset";
+    ASSERT_TRUE(writeFileAtomically(file, bytesOf("old")));
+    {
+        auto pending = AtomicFile::createWith(file, bytesOf("new"));
+        ASSERT_TRUE(pending);
+        EXPECT_EQ(contentOf(file), "old");
+        AtomicFile moved = *std::move(pending);
+        ASSERT_TRUE(moved.commit());
+        EXPECT_EQ(contentOf(file), "new");
+    }
+    { const auto dropped = AtomicFile::createWith(file, bytesOf("never")); }
+    EXPECT_EQ(contentOf(file), "new");
+    EXPECT_EQ(filesInFolder(), 1u) << "no temporary file stays";
+}
+
 TEST_F(Files, EmptyFileIsReadAsNoBytes) {
     ASSERT_TRUE(writeFileAtomically(folder_ / "empty", {}));
     EXPECT_TRUE(readFile(folder_ / "empty", 10)->bytes().empty());

@@ -128,6 +128,65 @@ TEST(ImportSvx, KeepsColours) {
     }
 }
 
+/// The colours of the test above in three channels; `bits` of a sample.
+void addPrimaries(SvxWriter& writer, std::uint8_t bits, const std::vector<std::string>& types) {
+    for (const std::string& type : types) {
+        const int axis = type == "RED" ? 0 : type == "GREEN" ? 1 : 2;
+        writer.addScalarChannel(fmt::format("type=\"{}\"", type), type, bits, [axis, bits](glm::ivec3 v) {
+            const int value = 20 * (axis + 2) * v[axis];
+            return static_cast<std::uint16_t>(bits == 16 ? value * 257 : value);
+        });
+    }
+}
+
+TEST(ImportSvx, ColoursComeFromRedGreenAndBlue) {
+    for (const std::uint8_t bits : {std::uint8_t{8}, std::uint8_t{16}}) {
+        SCOPED_TRACE(int{bits});
+        SvxWriter writer(kGrid);
+        writer.addScalarChannel("type=\"DENSITY\"", "density", 8,
+                                [](glm::ivec3 v) { return asymmetric(v) ? 255 : 0; });
+        addPrimaries(writer, bits, {"GREEN", "RED", "BLUE"});
+        const Imported imported = importAs(writer.finish(), "a.svx");
+        ASSERT_TRUE(imported.result) << imported.errorText();
+        const VoxelAsset& asset = *imported.result;
+        EXPECT_EQ(voxelSet(asset.models[0]), asymmetricVoxels());
+        for (const auto& [x, y, z] : asymmetricVoxels()) {
+            const auto material = asset.models[0].at({x, y, z});
+            EXPECT_EQ(asset.materials[material.value()].baseColor, (glm::u8vec4{40 * x, 60 * y, 80 * z, 255}));
+        }
+        EXPECT_FALSE(imported.reported("svx-channel-skipped"));
+    }
+}
+
+TEST(ImportSvx, MaterialFractionsSayWhereColoursAre) {
+    for (const bool primaries : {true, false}) {
+        SvxWriter writer(kGrid);
+        writer.addScalarChannel("type=\"MATERIAL\" id=\"1\"", "m1", 8,
+                                [](glm::ivec3 v) { return asymmetric(v) ? 255 : 0; });
+        if (primaries) {
+            addPrimaries(writer, 8, {"RED", "GREEN", "BLUE"});
+        } else {
+            writer.addColorChannel("type=\"COLOR-RGB\"", "color", [](glm::ivec3) { return glm::u8vec3{1, 2, 3}; });
+        }
+        const Imported imported = importAs(writer.finish(), "a.svx");
+        ASSERT_TRUE(imported.result) << imported.errorText();
+        EXPECT_EQ(voxelSet(imported.result->models[0]), asymmetricVoxels());
+        EXPECT_TRUE(imported.reported("svx-materials-unused"));
+    }
+}
+
+TEST(ImportSvx, SomePrimariesAreNoColour) {
+    SvxWriter writer(kGrid);
+    writer.addScalarChannel("type=\"DENSITY\"", "density", 8, [](glm::ivec3) { return 255; });
+    addPrimaries(writer, 8, {"RED", "BLUE"});
+    const Imported imported = importAs(writer.finish(), "a.svx");
+    ASSERT_TRUE(imported.result) << imported.errorText();
+    EXPECT_TRUE(imported.reported("svx-channel-skipped"));
+    SvxWriter alone(kGrid);
+    addPrimaries(alone, 8, {"RED", "GREEN", "BLUE"});
+    EXPECT_EQ(importAs(alone.finish(), "a.svx").result.error().code, ErrorCode::UnsupportedFeature);
+}
+
 TEST(ImportSvx, AlphaIsTheDensityOfDensityColor) {
     SvxWriter writer(kGrid);
     writer.addChannel(

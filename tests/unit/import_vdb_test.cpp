@@ -239,10 +239,99 @@ TEST(ImportVdb, OtherTransformsOfColoursAreReported) {
     auto density = fogGrid("density", {Coord(0, 0, 0)});
     auto cd = openvdb::Vec3SGrid::create(openvdb::Vec3s(1.0f));
     cd->setName("Cd");
+    cd->tree().setValueOn(Coord(0, 0, 0), openvdb::Vec3s(1.0f));
     cd->setTransform(openvdb::math::Transform::createLinearTransform(0.5));
     const Imported imported = importGrids({density, cd});
     ASSERT_TRUE(imported.result) << imported.errorText();
     EXPECT_TRUE(imported.reported("vdb-color-transform"));
+}
+
+/// Red, green and blue as Blender's smoke has them: (1, 0, 0.5) at x = 0, green alone at x = 1, a blue tile at 128.
+openvdb::GridPtrVec channelGrids(const std::array<std::string, 3>& names) {
+    const auto red = fogGrid(names[0], {Coord(0, 0, 0)});
+    const auto green = fogGrid(names[1], {Coord(1, 0, 0)});
+    const auto blue = fogGrid(names[2], {});
+    blue->tree().setValueOn(Coord(0, 0, 0), 0.5f);
+    blue->tree().addTile(2, Coord(128, 0, 0), 1.0f, true);
+    return {red, green, blue};
+}
+
+TEST(ImportVdb, ColoursComeFromThreeFloatGrids) {
+    using Names = std::array<std::string, 3>;
+    for (const Names& names : {Names{"color_r", "color_g", "color_b"}, Names{"Cd.x", "Cd.y", "Cd.z"}}) {
+        SCOPED_TRACE(names[0]);
+        const auto density = fogGrid("density", {Coord(0, 0, 0), Coord(1, 0, 0), Coord(2, 0, 0)});
+        density->tree().addTile(2, Coord(128, 0, 0), 1.0f, true);
+        openvdb::GridPtrVec grids = channelGrids(names);
+        grids.push_back(density);
+        const Imported imported = importGrids(grids);
+        ASSERT_TRUE(imported.result) << imported.errorText();
+        const VoxelAsset& asset = *imported.result;
+        ASSERT_EQ(asset.models.size(), 1u) << "the colour grids are no models beside a density";
+        EXPECT_EQ(asset.models[0].voxelCount(), 3u + (1u << 21));
+        const auto colorAt = [&](glm::ivec3 v) {
+            return glm::ivec3{asset.materials.at(*asset.models[0].at(v)).baseColor};
+        };
+        EXPECT_EQ(colorAt({0, 0, 0}), (glm::ivec3{255, 0, 188}));
+        EXPECT_EQ(colorAt({1, 0, 0}), (glm::ivec3{0, 255, 0}));
+        EXPECT_EQ(colorAt({2, 0, 0}), (glm::ivec3{0, 0, 0}));
+        EXPECT_EQ(colorAt({200, 100, 100}), (glm::ivec3{0, 0, 255}));
+        EXPECT_LT(asset.models[0].memoryBytes(), 1u << 20) << "the tile must stay one";
+    }
+}
+
+TEST(ImportVdb, ThreeFloatGridsAloneStayModels) {
+    const Imported imported = importGrids(channelGrids({"color_r", "color_g", "color_b"}));
+    ASSERT_TRUE(imported.result) << imported.errorText();
+    EXPECT_EQ(imported.result->models.size(), 3u);
+    const Imported two = importGrids({fogGrid("color_r", {Coord(0, 0, 0)}), fogGrid("color_g", {Coord(0, 0, 0)})});
+    EXPECT_EQ(two.result->models.size(), 2u) << "two are no colours";
+}
+
+TEST(ImportVdb, ColourChannelsOfDifferentTransformsAreReported) {
+    openvdb::GridPtrVec grids = channelGrids({"color_r", "color_g", "color_b"});
+    grids[1]->setTransform(openvdb::math::Transform::createLinearTransform(0.5));
+    grids.push_back(fogGrid("density", {Coord(0, 0, 0)}));
+    const Imported imported = importGrids(grids);
+    ASSERT_TRUE(imported.result) << imported.errorText();
+    EXPECT_TRUE(imported.reported("vdb-color-transform"));
+    EXPECT_EQ(imported.result->materials.size(), 1u);
+}
+
+TEST(ImportVdb, EmptyColourGridsColourNothing) {
+    const Imported imported = importGrids({fogGrid("density", {Coord(0, 0, 0)}), fogGrid("color_r", {}),
+                                           fogGrid("color_g", {}), fogGrid("color_b", {})});
+    ASSERT_TRUE(imported.result) << imported.errorText();
+    EXPECT_TRUE(imported.reported("vdb-grid-empty"));
+    const auto material = imported.result->models.at(0).at({0, 0, 0});
+    EXPECT_EQ(imported.result->materials.at(material.value()).baseColor, (glm::u8vec4{255, 255, 255, 255}));
+}
+
+TEST(ImportVdb, MaterialTablesOfOurOwnAreRestored) {
+    openvdb::initialize();
+    const auto labelled = [](const std::string& table) {
+        auto grid = openvdb::Int32Grid::create(0);
+        grid->setName("material");
+        grid->tree().setValueOn(Coord(0, 0, 0), 3);
+        grid->tree().setValueOn(Coord(1, 0, 0), 9);
+        grid->insertMeta("pfvox_grid", openvdb::StringMetadata("material"));
+        grid->insertMeta("pfvox_materials", openvdb::StringMetadata(table));
+        return importGrids({grid});
+    };
+    const Imported good = labelled("3 color=#01020304 type=glass ior=1.25 later=7 name=a b=c\\nd\n");
+    ASSERT_TRUE(good.result) << good.errorText();
+    const Material& restored = good.result->materials.at(good.result->models[0].at({0, 0, 0}).value());
+    EXPECT_EQ(restored.baseColor, (glm::u8vec4{1, 2, 3, 4}));
+    EXPECT_EQ(restored.type, MaterialType::Glass);
+    EXPECT_EQ(restored.indexOfRefraction, 1.25f);
+    EXPECT_EQ(restored.name, "a b=c\nd");
+    EXPECT_EQ(good.result->materials.at(good.result->models[0].at({1, 0, 0}).value()).name, "9");
+    for (const char* bad : {"x color=#01020304\n", "3 color=#0102\n", "3 type=stone\n", "3 ior=nan\n"}) {
+        const Imported malformed = labelled(bad);
+        ASSERT_TRUE(malformed.result) << malformed.errorText();
+        EXPECT_TRUE(malformed.reported("vdb-materials-malformed")) << bad;
+        EXPECT_EQ(malformed.result->models[0].voxelCount(), 2u);
+    }
 }
 
 TEST(ImportVdb, GridsAreChosenByName) {

@@ -4,8 +4,13 @@
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
 
+#include <algorithm>
 #include <atomic>
+#include <condition_variable>
+#include <deque>
 #include <mutex>
+#include <optional>
+#include <thread>
 #include <vector>
 
 namespace pfvox::tools {
@@ -38,6 +43,59 @@ class Sequencer {
     const BatchItem& item_;
 };
 
+/// Runs the commits of a batch on threads that wait for the disk most of the time.
+class Committers {
+  public:
+    /// As many waits as a disk and its journal can join, and no more files than that which an interrupt has to wait for.
+    static constexpr std::size_t kThreads = 16;
+    static constexpr std::size_t kMaxWaiting = 32;
+
+    Committers(std::size_t count, std::function<void(std::size_t)> commit) : commit_(std::move(commit)) {
+        for (std::size_t i = 0; i < std::min(kThreads, count); ++i) threads_.emplace_back([this] { run(); });
+    }
+    Committers(const Committers&) = delete;
+    Committers& operator=(const Committers&) = delete;
+    /// Finishes what is waiting.
+    ~Committers() {
+        {
+            const std::scoped_lock lock(mutex_);
+            isClosed_ = true;
+        }
+        changed_.notify_all();
+        for (std::thread& thread : threads_) thread.join();
+    }
+
+    void add(std::size_t index) {
+        std::unique_lock lock(mutex_);
+        changed_.wait(lock, [&] { return waiting_.size() < kMaxWaiting; });
+        waiting_.push_back(index);
+        lock.unlock();
+        changed_.notify_all();
+    }
+
+  private:
+    void run() {
+        std::unique_lock lock(mutex_);
+        while (true) {
+            changed_.wait(lock, [&] { return !waiting_.empty() || isClosed_; });
+            if (waiting_.empty()) return;
+            const std::size_t index = waiting_.front();
+            waiting_.pop_front();
+            lock.unlock();
+            changed_.notify_all();
+            commit_(index);
+            lock.lock();
+        }
+    }
+
+    std::function<void(std::size_t)> commit_;
+    std::mutex mutex_;
+    std::condition_variable changed_;
+    std::deque<std::size_t> waiting_;
+    bool isClosed_ = false;
+    std::vector<std::thread> threads_;
+};
+
 }  // namespace
 
 std::size_t runBatch(std::size_t count, const BatchSettings& settings, const BatchItem& item) {
@@ -52,6 +110,14 @@ std::size_t runBatch(std::size_t count, const BatchSettings& settings, const Bat
     std::atomic<std::size_t> started{0};
     std::atomic<std::size_t> next{0};
     std::atomic<bool> stop{false};
+    const auto done = [&](std::size_t index, bool good) {
+        if (!good && settings.failFast) stop = true;
+        sequencer.arrived(index);
+    };
+    // One asset has nothing to overlap with.
+    std::optional<Committers> committers;
+    if (item.commit && count > 1)
+        committers.emplace(count, [&](std::size_t index) { done(index, item.commit(index)); });
     arena.execute([&] {
         tbb::parallel_for(
             std::size_t{0}, count,
@@ -63,11 +129,12 @@ std::size_t runBatch(std::size_t count, const BatchSettings& settings, const Bat
                 bool good = false;
                 // Isolated: a thread that waits inside an asset must not begin another one on top of it.
                 tbb::this_task_arena::isolate([&] { good = item.work(index); });
-                if (!good && settings.failFast) stop = true;
-                sequencer.arrived(index);
+                if (good && committers) return committers->add(index);
+                done(index, good && (!item.commit || item.commit(index)));
             },
             tbb::simple_partitioner());
     });
+    committers.reset();
     sequencer.flush();
     return started;
 }

@@ -1,7 +1,7 @@
 #include "common/interrupt.hpp"
 
 #include <unistd.h>
-#include <atomic>
+#include <condition_variable>
 #include <csignal>
 #include <mutex>
 #include <thread>
@@ -13,14 +13,20 @@ namespace pfvox::tools {
 
 namespace {
 
-std::shared_mutex& writeGate() {
+/// Counts those who write. Once a signal came, new writers wait for the end of the process: they could keep it from
+/// coming for ever.
+struct Gate {
+    std::mutex mutex;
+    std::condition_variable changed;
+    int writers = 0;
+    bool isEnding = false;
+};
+
+Gate& writeGate() {
     // Never destroyed: the waiting thread may still use it while the process exits.
-    static auto* gate = new std::shared_mutex;
+    static auto* gate = new Gate;
     return *gate;
 }
-
-/// Set once a signal came: new writers wait for the end of the process, or they could keep the gate from it.
-std::atomic<bool> isEnding{false};
 
 }  // namespace
 
@@ -33,18 +39,36 @@ void exitOnInterrupt(std::function<void()> lastWords) {
     std::thread([signals, lastWords = std::move(lastWords)] {
         int received = 0;
         sigwait(&signals, &received);
-        isEnding = true;
-        const std::unique_lock lock(writeGate());
+        Gate& gate = writeGate();
+        std::unique_lock lock(gate.mutex);
+        gate.isEnding = true;
+        gate.changed.wait(lock, [&] { return gate.writers == 0; });
         lastWords();
         ::_exit(static_cast<int>(ExitCode::Interrupted));
     }).detach();
 }
 
-bool isInterrupted() { return isEnding; }
+bool isInterrupted() {
+    Gate& gate = writeGate();
+    const std::scoped_lock lock(gate.mutex);
+    return gate.isEnding;
+}
 
-WriteGuard::WriteGuard() : lock_(writeGate(), std::defer_lock) {
-    isEnding.wait(true);
-    lock_.lock();
+WriteGuard::WriteGuard() {
+    Gate& gate = writeGate();
+    std::unique_lock lock(gate.mutex);
+    gate.changed.wait(lock, [&] { return !gate.isEnding; });
+    ++gate.writers;
+}
+
+WriteGuard::~WriteGuard() {
+    if (!holds_) return;
+    Gate& gate = writeGate();
+    {
+        const std::scoped_lock lock(gate.mutex);
+        --gate.writers;
+    }
+    gate.changed.notify_all();
 }
 
 }  // namespace pfvox::tools

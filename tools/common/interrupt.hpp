@@ -6,7 +6,7 @@
 #pragma once
 
 #include <functional>
-#include <shared_mutex>
+#include <utility>
 
 namespace pfvox::tools {
 
@@ -17,13 +17,16 @@ void exitOnInterrupt(std::function<void()> lastWords);
 /// Whether a signal has come. Whoever holds a WriteGuard for long asks, and comes to an end.
 bool isInterrupted();
 
-/// Keeps an interrupt from ending the process while it lives.
+/// Keeps an interrupt from ending the process while it lives. May be handed from thread to thread.
 class WriteGuard {
   public:
     WriteGuard();
+    WriteGuard(WriteGuard&& other) noexcept : holds_(std::exchange(other.holds_, false)) {}
+    WriteGuard& operator=(WriteGuard&&) = delete;
+    ~WriteGuard();
 
   private:
-    std::shared_lock<std::shared_mutex> lock_;
+    bool holds_ = true;
 };
 
 }  // namespace pfvox::tools

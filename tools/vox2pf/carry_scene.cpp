@@ -142,8 +142,9 @@ Result<void> carry(const AssetTask& task, const OutputsOfRun& outputs, const Con
 
 AssetResult carryScene(const AssetTask& task, const OutputsOfRun& outputs, const ConvertPolicy& policy,
                        const Limits& limits) {
-    return guardedResult(task,
-                         [&](AssetResult& result) { return carry(task, outputs, policy, limits, result); });
+    AssetResult result;
+    guardResult(task, result, [&] { return carry(task, outputs, policy, limits, result); });
+    return result;
 }
 
 }  // namespace pfvox::tools

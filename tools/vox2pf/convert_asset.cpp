@@ -1,12 +1,11 @@
 #include "vox2pf/convert_asset.hpp"
 
 #include <fmt/format.h>
-#include <pfvox/files.hpp>
 
 #include <algorithm>
+#include <chrono>
 #include <new>
 
-#include "common/interrupt.hpp"
 #include "common/reporter.hpp"
 #include "common/text.hpp"
 
@@ -43,9 +42,25 @@ Existing inspectOutput(const fs::path& output, const ContentKey& wanted, const L
             .reason = "same source, settings and program as in the last conversion"};
 }
 
-/// Converts, and writes what came out. Sets report, diagnostics and outcome.
+/// Adds the time of its life to a number of seconds.
+class AddSeconds {
+  public:
+    explicit AddSeconds(double& seconds) : seconds_(seconds) {}
+    AddSeconds(const AddSeconds&) = delete;
+    AddSeconds& operator=(const AddSeconds&) = delete;
+    ~AddSeconds() {
+        seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    }
+
+  private:
+    double& seconds_;
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+/// Converts, and writes what came out. Sets report, diagnostics, outcome and output.
 Result<void> convertAndWrite(const AssetTask& task, std::span<const std::byte> source,
-                             const ConvertPolicy& policy, const Limits& limits, AssetResult& result) {
+                             const ConvertPolicy& policy, const Limits& limits, AssetResultAndOutput& asset) {
+    AssetResult& result = asset.result;
     DiagnosticList diagnostics;
     auto bytes = convertBytes(source, task.source, task.settings, limits, diagnostics, result.report);
     result.diagnostics = diagnostics.entries();
@@ -57,14 +72,17 @@ Result<void> convertAndWrite(const AssetTask& task, std::span<const std::byte> s
         result.reason = "converted again; the bytes are the same";
         return {};
     }
-    const WriteGuard guard;
-    PFVOX_CHECK(io::writeFileAtomically(task.output, *bytes));
+    const AddSeconds timer(result.report.writeSeconds);
+    WriteGuard guard;
+    PFVOX_TRY(io::AtomicFile, file, io::AtomicFile::createWith(task.output, *bytes));
+    asset.output.emplace(PendingOutput{std::move(guard), std::move(file)});
     result.outcome = Outcome::Converted;
     return {};
 }
 
 Result<void> decideAndConvert(const AssetTask& task, const ConvertPolicy& policy, const Limits& limits,
-                              AssetResult& result) {
+                              AssetResultAndOutput& asset) {
+    AssetResult& result = asset.result;
     PFVOX_TRY(const io::FileBytes, source, io::readFile(task.source, limits.maxFileBytes));
     result.report.sourceBytes = source.bytes().size();
     const Existing existing = inspectOutput(task.output, contentKey(source.bytes(), task.settings), limits);
@@ -83,7 +101,13 @@ Result<void> decideAndConvert(const AssetTask& task, const ConvertPolicy& policy
         result.outcome = Outcome::Planned;
         return {};
     }
-    return convertAndWrite(task, source.bytes(), policy, limits, result);
+    return convertAndWrite(task, source.bytes(), policy, limits, asset);
+}
+
+void failWith(const AssetTask& task, Error error, AssetResult& result) {
+    if (error.file.empty()) error.file = task.source;
+    result.outcome = Outcome::Failed;
+    result.error = std::move(error);
 }
 
 }  // namespace
@@ -124,28 +148,29 @@ Result<void> checkWarnings(const AssetResult& result, const ConvertPolicy& polic
                 fmt::format("{}, taken as errors: nothing written", plural(warnings, "warning")));
 }
 
-AssetResult guardedResult(const AssetTask& task, const std::function<Result<void>(AssetResult&)>& work) {
-    AssetResult result;
-    const auto failWith = [&](Error error) {
-        if (error.file.empty()) error.file = task.source;
-        result.outcome = Outcome::Failed;
-        result.error = std::move(error);
-    };
+void guardResult(const AssetTask& task, AssetResult& result, const std::function<Result<void>()>& work) {
     try {
-        auto status = work(result);
-        if (!status) failWith(std::move(status).error());
+        auto status = work();
+        if (!status) failWith(task, std::move(status).error(), result);
     } catch (const std::bad_alloc&) {
-        failWith(
-            {.code = ErrorCode::LimitExceeded, .message = "not enough memory; fewer threads (-j) may help"});
+        failWith(task,
+                 {.code = ErrorCode::LimitExceeded, .message = "not enough memory; fewer threads (-j) may help"},
+                 result);
     } catch (const std::exception& exception) {
-        failWith({.code = ErrorCode::Internal, .message = exception.what()});
+        failWith(task, {.code = ErrorCode::Internal, .message = exception.what()}, result);
     }
-    return result;
 }
 
-AssetResult convertAsset(const AssetTask& task, const ConvertPolicy& policy, const Limits& limits) {
-    return guardedResult(task,
-                         [&](AssetResult& result) { return decideAndConvert(task, policy, limits, result); });
+AssetResultAndOutput beginAsset(const AssetTask& task, const ConvertPolicy& policy, const Limits& limits) {
+    AssetResultAndOutput asset;
+    guardResult(task, asset.result, [&] { return decideAndConvert(task, policy, limits, asset); });
+    return asset;
+}
+
+void finishAsset(const AssetTask& task, PendingOutput output, AssetResult& result) {
+    const AddSeconds timer(result.report.writeSeconds);
+    auto status = output.file.commit();
+    if (!status) failWith(task, std::move(status).error(), result);
 }
 
 }  // namespace pfvox::tools

@@ -8,9 +8,12 @@
 #include <functional>
 #include <optional>
 #include <pfvox/convert.hpp>
+#include <pfvox/files.hpp>
 #include <span>
 #include <string>
 #include <vector>
+
+#include "common/interrupt.hpp"
 
 namespace pfvox::tools {
 
@@ -50,8 +53,8 @@ struct AssetTask {
     bool isScene = false;  ///< a scene.toml: carryScene() instead of convertAsset()
 };
 
-/// Runs `work` on a fresh result. Whatever it fails with or throws becomes the result's error.
-AssetResult guardedResult(const AssetTask& task, const std::function<Result<void>(AssetResult&)>& work);
+/// Runs `work`. Whatever it fails with or throws becomes the error of `result`.
+void guardResult(const AssetTask& task, AssetResult& result, const std::function<Result<void>()>& work);
 
 /// Gives an output that stays as it is the present time, where the policy asks for it.
 void refreshTimeStamp(const std::filesystem::path& output, const ConvertPolicy& policy);
@@ -62,8 +65,22 @@ Result<void> checkWarnings(const AssetResult& result, const ConvertPolicy& polic
 /// Whether the output already holds exactly these bytes.
 bool holdsBytes(const std::filesystem::path& output, std::span<const std::byte> bytes, const Limits& limits);
 
-/// Never throws; whatever goes wrong is in the result. May be called from several threads for different
-/// outputs.
-AssetResult convertAsset(const AssetTask& task, const ConvertPolicy& policy, const Limits& limits);
+/// An output that is written but not yet in its place.
+struct PendingOutput {
+    WriteGuard guard;
+    io::AtomicFile file;
+};
+
+struct AssetResultAndOutput {
+    AssetResult result;
+    std::optional<PendingOutput> output;  ///< for finishAsset; not set when there is nothing to put in place
+};
+
+/// Everything but the wait for the disk. Never throws; whatever goes wrong is in the result. May be called from several
+/// threads for different outputs.
+AssetResultAndOutput beginAsset(const AssetTask& task, const ConvertPolicy& policy, const Limits& limits);
+
+/// Puts the output in its place.
+void finishAsset(const AssetTask& task, PendingOutput output, AssetResult& result);
 
 }  // namespace pfvox::tools

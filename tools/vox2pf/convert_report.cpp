@@ -34,6 +34,7 @@ std::string contentText(const AssetTask& task, const ConvertReport& report) {
                            formatBytes(report.outputBytes));
     std::string text = fmt::format("{}, {}, {}", plural(report.models, "model"),
                                    plural(report.voxels, "voxel"), formatBytes(report.outputBytes));
+    if (report.hollowedVoxels > 0) text += fmt::format(", {} hollowed", formatCount(report.hollowedVoxels));
     if (report.voxels > 0) {
         text += fmt::format(" ({:.3f} bytes/voxel)",
                             static_cast<double>(report.outputBytes) / static_cast<double>(report.voxels));
@@ -91,6 +92,7 @@ Json assetJson(const AssetTask& task, const AssetResult& result) {
     json["instances"] = report.instances;
     json["materials"] = report.materials;
     json["voxels"] = report.voxels;
+    json["hollowedVoxels"] = report.hollowedVoxels;
     json["nodes"] = report.nodes;
     json["leaves"] = report.leaves;
     json["seconds"] = {{"import", report.importSeconds},

@@ -11,9 +11,11 @@ ExitCode ConvertRun::run(std::vector<AssetTask> tasks) {
     tasks_ = std::move(tasks);
     outputs_ = OutputsOfRun(tasks_);
     results_.resize(tasks_.size());
+    pending_.resize(tasks_.size());
     Progress progress(reporter_, tasks_.size());
     runBatch(tasks_.size(), {.threads = options_.common.threads, .failFast = options_.failFast},
              {.work = [&](std::size_t i) { return work(i); },
+              .commit = [&](std::size_t i) { return commit(i); },
               .finished = [&](std::size_t i) { report(i); },
               .progressed = [&](std::size_t i) { progress.advance(results_[i].report.voxels); }});
     reporter_.clearProgress();
@@ -30,8 +32,18 @@ bool ConvertRun::work(std::size_t i) {
                                .ifChanged = options_.ifChanged,
                                .refreshTimeStamp = !options_.depfile.empty() && !options_.ifChanged,
                                .warningsAsErrors = options_.warningsAsErrors};
-    results_[i] = tasks_[i].isScene ? carryScene(tasks_[i], outputs_, policy, limits_)
-                                    : convertAsset(tasks_[i], policy, limits_);
+    if (tasks_[i].isScene) {
+        results_[i] = carryScene(tasks_[i], outputs_, policy, limits_);
+    } else {
+        AssetResultAndOutput asset = beginAsset(tasks_[i], policy, limits_);
+        results_[i] = std::move(asset.result);
+        if (asset.output) pending_[i] = std::make_unique<PendingOutput>(*std::move(asset.output));
+    }
+    return results_[i].outcome != Outcome::Failed;
+}
+
+bool ConvertRun::commit(std::size_t i) {
+    if (const auto output = std::move(pending_[i])) finishAsset(tasks_[i], std::move(*output), results_[i]);
     return results_[i].outcome != Outcome::Failed;
 }
 

@@ -2,6 +2,7 @@
 // exit code.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -41,6 +42,7 @@ class ConvertRun {
 
   private:
     bool work(std::size_t i);
+    bool commit(std::size_t i);
     void report(std::size_t i);
     void reportUnstarted();
     bool writeDependencies();
@@ -52,6 +54,7 @@ class ConvertRun {
     std::vector<AssetTask> tasks_;
     std::vector<AssetResult> results_;
     OutputsOfRun outputs_;
+    std::vector<std::unique_ptr<PendingOutput>> pending_;  ///< written, not yet in their places
 };
 
 }  // namespace pfvox::tools

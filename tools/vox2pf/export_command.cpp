@@ -14,34 +14,55 @@ namespace pfvox::tools {
 
 namespace {
 
-constexpr const char* kVoxExtension = ".vox";
+constexpr const char* kVox = "vox";
+constexpr const char* kVdb = "vdb";
 
 struct ExportOptions : ReadOptions {
     std::string output;
+    std::string format;
+};
+
+/// Where files go and what they become.
+struct Target {
+    std::filesystem::path output;
+    std::string format;  ///< kVox or kVdb
+    bool isFile = false;
 };
 
 HelpText helpText() {
-    return {.summary = "Writes PF_VOX files back as MagicaVoxel files, for round trips and for editing.",
-            .usage = {"vox2pf export [options] <file.pf_vox | folder | @list | ->... -o <file.vox | folder>"},
+    return {.summary = "Writes PF_VOX files back as MagicaVoxel or OpenVDB files, for round trips and for editing.",
+            .usage = {"vox2pf export [options] <file.pf_vox | folder | @list | ->... -o <file.vox | file.vdb | folder>"},
             .examples = {{"vox2pf export hall.pf_vox -o hall.vox", "one file"},
-                         {"vox2pf export build/assets -o back", "every PF_VOX file of a folder, into one folder"}}};
+                         {"vox2pf export hall.pf_vox -o hall.vdb", "as OpenVDB grids: density, Cd and material"},
+                         {"vox2pf export build/assets --format vdb -o back", "every PF_VOX file of a folder, into one folder"}}};
 }
 
-/// A name that ends in .vox is the file itself, anything else a folder for files of the sources' names.
-std::filesystem::path outputFor(const std::filesystem::path& source, const std::filesystem::path& output) {
-    if (output.extension() == kVoxExtension) return output;
-    return (output / source.filename()).replace_extension(kVoxExtension);
+/// A name that ends in .vox or .vdb is the file itself, anything else a folder for files of the sources' names.
+/// Nothing when name and format contradict each other.
+std::optional<Target> targetOf(const ExportOptions& options) {
+    Target target{.output = options.output, .format = options.format};
+    const std::string extension = target.output.extension().string();
+    target.isFile = extension == ".vox" || extension == ".vdb";
+    const std::string named = target.isFile ? extension.substr(1) : kVox;
+    if (target.format.empty()) target.format = named;
+    if (target.isFile && target.format != named) return std::nullopt;
+    return target;
 }
 
-Result<std::uint64_t> exportFile(const std::filesystem::path& source, const std::filesystem::path& output,
-                                 const Limits& limits, Diagnostics& diagnostics) {
+std::filesystem::path outputFor(const std::filesystem::path& source, const Target& target) {
+    if (target.isFile) return target.output;
+    return (target.output / source.filename()).replace_extension(target.format);
+}
+
+Result<std::uint64_t> exportFile(const std::filesystem::path& source, const Target& target, const Limits& limits,
+                                 Diagnostics& diagnostics) {
     PFVOX_TRY(const OctreeAsset, asset, loadPfVox(source, limits, diagnostics));
-    auto bytes = exportVox(asset, diagnostics);
+    auto bytes = target.format == kVdb ? exportVdb(asset, limits, diagnostics) : exportVox(asset, diagnostics);
     if (!bytes) {
         bytes.error().file = source;
         return tl::make_unexpected(std::move(bytes).error());
     }
-    PFVOX_CHECK(io::writeFileAtomically(output, *bytes));
+    PFVOX_CHECK(io::writeFileAtomically(outputFor(source, target), *bytes));
     return bytes->size();
 }
 
@@ -51,18 +72,26 @@ Command makeExportCommand(CLI::App& tool) {
     auto options = std::make_shared<ExportOptions>();
     CLI::App& command = addCommand(tool, "export", helpText());
     addReadOptions(command, *options);
-    command.add_option("-o,--output", options->output, "the .vox file, or a folder for several")
+    command.add_option("-o,--output", options->output, "the .vox or .vdb file, or a folder for several")
         ->option_text("PATH")
         ->required();
+    command.add_option("--format", options->format, "vox or vdb; default: as the output is named, in a folder vox")
+        ->option_text("NAME")
+        ->check(CLI::IsMember({kVox, kVdb}));
 
     const auto run = [&command, options] {
+        const auto target = targetOf(*options);
+        if (!target) {
+            return usageError(command, fmt::format("--format {} contradicts the name of the output, {}",
+                                                   options->format, options->output));
+        }
         std::set<std::filesystem::path> written;
         const auto visit = [&](const std::filesystem::path& file, const Limits& limits,
                                Reporter& reporter) -> std::optional<ErrorCode> {
-            const std::filesystem::path output = outputFor(file, options->output);
+            const std::filesystem::path output = outputFor(file, *target);
             DiagnosticList diagnostics;
             auto bytes = written.insert(output).second
-                             ? exportFile(file, output, limits, diagnostics)
+                             ? exportFile(file, *target, limits, diagnostics)
                              : Result<std::uint64_t>(tl::make_unexpected(
                                    Error{.code = ErrorCode::FileNotWritable,
                                          .message = fmt::format("{} was just written from another input; export "

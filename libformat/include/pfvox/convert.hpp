@@ -22,6 +22,7 @@ struct ConvertReport {
     std::uint64_t sourceBytes = 0;
     std::uint64_t outputBytes = 0;
     std::uint64_t voxels = 0;  ///< of all models, each counted once
+    std::uint64_t hollowedVoxels = 0;  ///< of these, voxels that cannot be seen; 0 unless they were looked for
     std::uint64_t nodes = 0;
     std::uint64_t leaves = 0;
     std::uint32_t models = 0;

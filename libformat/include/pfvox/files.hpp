@@ -33,6 +33,36 @@ class FileBytes {
 /// Reads a whole regular file. Errors, each with `file`: FileNotFound, FileNotReadable, LimitExceeded.
 Result<FileBytes> readFile(const std::filesystem::path& file, std::uint64_t maxBytes);
 
+/// An output that is written piece by piece under a temporary name in the folder of its target, and appears complete or
+/// not at all. commit() mostly waits for the disk: a tool that writes many files waits for several at once
+/// (docs/decisions/014-syncs.md).
+class AtomicFile {
+  public:
+    /// Creates missing parent folders. Errors: FileNotWritable.
+    static Result<AtomicFile> create(const std::filesystem::path& file);
+    /// create() and write().
+    static Result<AtomicFile> createWith(const std::filesystem::path& file, std::span<const std::byte> bytes);
+
+    AtomicFile(AtomicFile&& other) noexcept;
+    AtomicFile& operator=(AtomicFile&&) = delete;
+    /// Removes the temporary file unless commit() has succeeded.
+    ~AtomicFile();
+
+    /// Appends. Errors: FileNotWritable.
+    Result<void> write(std::span<const std::byte> bytes);
+    /// Syncs the file and renames it to its target. To be called once. Errors: FileNotWritable; then the target is
+    /// what it was before.
+    Result<void> commit();
+
+  private:
+    AtomicFile(std::filesystem::path file, std::filesystem::path temporary, int descriptor)
+        : file_(std::move(file)), temporary_(std::move(temporary)), descriptor_(descriptor) {}
+
+    std::filesystem::path file_;
+    std::filesystem::path temporary_;  ///< empty once there is nothing to remove
+    int descriptor_;                   ///< -1 once closed
+};
+
 /// Writes to a temporary name in the same folder, syncs and renames: `file` holds either all of `bytes` or
 /// what it held before. Creates missing parent folders. Errors: FileNotWritable.
 Result<void> writeFileAtomically(const std::filesystem::path& file, std::span<const std::byte> bytes);

@@ -28,6 +28,7 @@
 #include <pfvox/asset.hpp>
 #include <pfvox/error.hpp>
 #include <pfvox/limits.hpp>
+#include <pfvox/pooled_vector.hpp>
 #include <pfvox/voxel_model.hpp>
 #include <span>
 #include <string>
@@ -60,9 +61,8 @@ constexpr std::uint32_t pointer(std::uint32_t descriptor) {
 /// A tree of child descriptors. Node 0 is the root, a cube of edge 2^depth.
 struct NodeTree {
     std::uint32_t depth = 0;  ///< levels below the root; a leaf at level depth has edge 1
-    std::vector<std::uint32_t>
-        nodes;  ///< child descriptors; empty only in the top tree of a one-region model
-    std::vector<std::uint32_t> farTable;  ///< distances in nodes, for descriptors with the far bit
+    PooledVector<std::uint32_t> nodes;     ///< child descriptors; none only in the top tree of a one-region model
+    PooledVector<std::uint32_t> farTable;  ///< distances in nodes, for descriptors with the far bit
 
     /// Index of the first inner child of node `index`. Precondition: the node has one.
     std::uint32_t firstChild(std::uint32_t index) const {
@@ -91,12 +91,15 @@ struct NodeLod {
 struct OctreeRegion {
     glm::ivec3 originVoxels{0};  ///< lower corner in model voxels
     NodeTree tree;
-    std::vector<std::uint32_t> lookup;   ///< one word for each node
-    std::vector<std::uint8_t> values;    ///< palette indices of valueBytes() each, little endian
+    PooledVector<std::uint32_t> lookup;  ///< one word for each node
+    PooledVector<std::uint8_t> values;   ///< palette indices of valueBytes() each, little endian
     std::vector<MaterialIndex> palette;  ///< palette index -> material of the asset, ascending
     NodeLod lod;                         ///< empty unless asked for
     std::uint64_t voxelCount = 0;
     VoxelBox bounds;  ///< tight, in model voxels
+
+    /// Has the arrays take their memory from a pool. Precondition: they are empty.
+    void usePool(const std::shared_ptr<MemoryPool>& pool);
 
     std::size_t valueBytes() const { return palette.size() <= 256 ? 1 : 2; }
     std::size_t valueCount() const { return values.size() / valueBytes(); }

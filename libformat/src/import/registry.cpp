@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "import/importer.hpp"
+#include "import/merge.hpp"
 #include "io/byte_cursor.hpp"
 #include "io/files.hpp"
 
@@ -48,6 +49,14 @@ std::string nameForeignContent(std::span<const std::byte> bytes) {
                      : "no known voxel source: the first bytes fit none";
 }
 
+/// The VOX importer merges by itself, in the frame of its world: here its asset has one instance already.
+Result<VoxelAsset> importMerged(const import::Importer& importer, const import::SourceBytes& source,
+                                const ImportSettings& settings, const Limits& limits, Diagnostics& diagnostics) {
+    PFVOX_TRY(VoxelAsset, asset, importer.import(source, settings, limits, diagnostics));
+    if (settings.merge) PFVOX_CHECK(import::mergeAsset(asset, limits, diagnostics));
+    return asset;
+}
+
 }  // namespace
 
 std::span<const SourceFormat> sourceFormats() {
@@ -88,8 +97,8 @@ Result<VoxelAsset> importBytes(std::span<const std::byte> bytes, const std::file
         return result;
     };
     for (const import::Importer& importer : importers()) {
-        if (importer.recognises(source))
-            return withFile(importer.import(source, settings, limits, diagnostics));
+        if (!importer.recognises(source)) continue;
+        return withFile(importMerged(importer, source, settings, limits, diagnostics));
     }
     return withFile(fail(ErrorCode::UnsupportedFormat, nameForeignContent(bytes)));
 }

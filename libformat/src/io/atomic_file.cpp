@@ -1,8 +1,10 @@
-#include "io/atomic_file.hpp"
-
 #include <fcntl.h>
 
 #include <atomic>
+#include <pfvox/files.hpp>
+#include <utility>
+
+#include "io/descriptor.hpp"
 
 namespace pfvox::io {
 
@@ -43,24 +45,38 @@ Result<AtomicFile> AtomicFile::create(const std::filesystem::path& file) {
     temporary += fmt::format(".tmp-{}-{}", ::getpid(), serial.fetch_add(1));
     Descriptor fd(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
     if (!fd.valid()) return systemError(ErrorCode::FileNotWritable, file, "cannot write");
-    return AtomicFile(file, std::move(temporary), std::move(fd));
+    return AtomicFile(file, std::move(temporary), fd.release());
 }
 
+Result<AtomicFile> AtomicFile::createWith(const std::filesystem::path& file, std::span<const std::byte> bytes) {
+    PFVOX_TRY(AtomicFile, output, create(file));
+    PFVOX_CHECK(output.write(bytes));
+    return output;
+}
+
+AtomicFile::AtomicFile(AtomicFile&& other) noexcept
+    : file_(std::move(other.file_)),
+      temporary_(std::exchange(other.temporary_, {})),
+      descriptor_(std::exchange(other.descriptor_, -1)) {}
+
 AtomicFile::~AtomicFile() {
-    if (fd_.valid()) ::unlink(temporary_.c_str());
+    if (descriptor_ >= 0) ::close(descriptor_);
+    if (!temporary_.empty()) ::unlink(temporary_.c_str());
 }
 
 Result<void> AtomicFile::write(std::span<const std::byte> bytes) {
-    if (!writeAll(fd_.get(), bytes)) return systemError(ErrorCode::FileNotWritable, file_, "cannot write");
+    if (!writeAll(descriptor_, bytes)) return systemError(ErrorCode::FileNotWritable, file_, "cannot write");
     return {};
 }
 
 Result<void> AtomicFile::commit() {
-    if (::fsync(fd_.get()) != 0) return systemError(ErrorCode::FileNotWritable, file_, "cannot sync");
+    if (::fsync(descriptor_) != 0) return systemError(ErrorCode::FileNotWritable, file_, "cannot sync");
+    // The kernel may report a delayed write error only here.
+    if (::close(std::exchange(descriptor_, -1)) != 0)
+        return systemError(ErrorCode::FileNotWritable, file_, "cannot close");
     if (::rename(temporary_.c_str(), file_.c_str()) != 0)
         return systemError(ErrorCode::FileNotWritable, file_, "cannot rename the finished file into place");
-    // What close() could report, fsync has reported.
-    fd_.close();
+    temporary_.clear();
     return {};
 }
 

@@ -27,6 +27,8 @@ class Descriptor {
     ~Descriptor() { close(); }
     int get() const { return fd_; }
     bool valid() const { return fd_ >= 0; }
+    /// Gives the descriptor up: the caller closes it.
+    int release() { return std::exchange(fd_, -1); }
     /// False when the kernel reports a delayed write error.
     bool close() {
         const int fd = std::exchange(fd_, -1);

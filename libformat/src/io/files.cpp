@@ -8,7 +8,7 @@
 #include <cerrno>
 #include <string>
 
-#include "io/atomic_file.hpp"
+#include "io/descriptor.hpp"
 
 namespace pfvox::io {
 
@@ -50,8 +50,7 @@ Result<FileBytes> readFile(const std::filesystem::path& file, std::uint64_t maxB
 }
 
 Result<void> writeFileAtomically(const std::filesystem::path& file, std::span<const std::byte> bytes) {
-    PFVOX_TRY(AtomicFile, output, AtomicFile::create(file));
-    PFVOX_CHECK(output.write(bytes));
+    PFVOX_TRY(AtomicFile, output, AtomicFile::createWith(file, bytes));
     return output.commit();
 }
 

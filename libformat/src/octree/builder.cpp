@@ -141,12 +141,13 @@ Result<OctreeModel> planModel(const std::string& name, std::vector<RegionSource>
 /// again, so that its bricks stay in the cache and cost no fresh memory.
 class RegionWorker {
   public:
-    Result<OctreeRegion> build(const RegionTask& task, std::size_t materialCount) {
+    Result<OctreeRegion> build(const RegionTask& task, std::size_t materialCount,
+                               const std::shared_ptr<MemoryPool>& pool) {
         const RegionSource& source = task.source;
-        if (source.bricks != nullptr) return builder_.build(*source.bricks, task.extent, materialCount);
+        if (source.bricks != nullptr) return builder_.build(*source.bricks, task.extent, materialCount, pool);
         bricks_.reset(source.coord);
         for (const VoxelPartition::Piece& piece : source.pieces) bricks_.insert(piece.voxels);
-        return builder_.build(bricks_, task.extent, materialCount);
+        return builder_.build(bricks_, task.extent, materialCount, pool);
     }
 
   private:
@@ -155,11 +156,12 @@ class RegionWorker {
 };
 
 Result<void> runTasks(const std::vector<RegionTask>& tasks, std::size_t materialCount) {
+    const auto pool = std::make_shared<MemoryPool>();
     tbb::enumerable_thread_specific<RegionWorker> workers;
     std::vector<std::optional<Error>> errors(tasks.size());
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, tasks.size(), 1), [&](const auto& range) {
         for (std::size_t i = range.begin(); i < range.end(); ++i) {
-            auto region = workers.local().build(tasks[i], materialCount);
+            auto region = workers.local().build(tasks[i], materialCount, pool);
             if (region) {
                 *tasks[i].target = *std::move(region);
             } else {

@@ -12,7 +12,6 @@
 #pragma once
 
 #include <cstdint>
-#include <pfvox/error.hpp>
 #include <pfvox/octree.hpp>
 #include <span>
 #include <vector>
@@ -39,9 +38,5 @@ std::size_t countBranches(const NodeTree& tree);
 
 /// The planes of a tree; with the hoisted one if `lookup` is not empty.
 std::vector<std::uint8_t> splitPlanes(const NodeTree& tree, std::span<const std::uint32_t> lookup);
-
-/// Rebuilds `tree` (whose depth is given) and, when not null, the lookup words. Everything in the planes is
-/// untrusted. Errors: BadStructure with the index of the node as offset in the plane.
-Result<void> linkPlanes(const NodePlanes& planes, NodeTree& tree, std::vector<std::uint32_t>* lookup);
 
 }  // namespace pfvox::octree

@@ -14,13 +14,6 @@ namespace {
 
 constexpr std::uint32_t kMaxFarEntries = 1u << 15;
 
-/// Set bits of each byte value: std::popcount is a library call where the baseline has no such instruction.
-constexpr std::array<std::uint8_t, 256> kBitCount = [] {
-    std::array<std::uint8_t, 256> counts{};
-    for (unsigned i = 0; i < 256; ++i) counts[i] = static_cast<std::uint8_t>(std::popcount(i));
-    return counts;
-}();
-
 unsigned highestBit(unsigned mask) {
     return static_cast<unsigned>(std::bit_width(mask)) - 1;
 }

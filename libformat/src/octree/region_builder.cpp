@@ -139,11 +139,13 @@ Slot RegionBuilder::buildRoot(const VoxelRegion& source) {
 }
 
 Result<OctreeRegion> RegionBuilder::build(const VoxelRegion& source, Extent extent,
-                                          std::size_t materialCount) {
+                                          std::size_t materialCount,
+                                          const std::shared_ptr<MemoryPool>& pool) {
     writer_.clear();
     writer_.finish(buildRoot(source));
 
     OctreeRegion region;
+    region.usePool(pool);
     region.originVoxels = source.coord() * kRegionEdge;
     region.voxelCount = voxelCount_;
     region.bounds = {region.originVoxels + bounds_.min, region.originVoxels + bounds_.max};

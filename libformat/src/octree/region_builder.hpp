@@ -19,8 +19,9 @@ class RegionBuilder {
     /// is cut to the smallest aligned cube around its voxels.
     enum class Extent { Full, Shrink };
 
-    /// Precondition: !isEmpty(source). Errors: BadReference, LimitExceeded.
-    Result<OctreeRegion> build(const VoxelRegion& source, Extent extent, std::size_t materialCount);
+    /// The result lies in the pool. Precondition: !isEmpty(source). Errors: BadReference, LimitExceeded.
+    Result<OctreeRegion> build(const VoxelRegion& source, Extent extent, std::size_t materialCount,
+                               const std::shared_ptr<MemoryPool>& pool);
 
   private:
     Slot buildRoot(const VoxelRegion& source);

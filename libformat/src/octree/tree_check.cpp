@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 #include <array>
-#include <bit>
+#include <vector>
+
+#include "octree/lanes.hpp"
 
 namespace pfvox::octree {
 
@@ -15,7 +17,7 @@ tl::unexpected<Error> badNode(std::size_t index, std::string message) {
 }
 
 std::uint32_t countBits(std::uint32_t mask) {
-    return static_cast<std::uint32_t>(std::popcount(mask));
+    return kBitCount[mask];
 }
 
 /// What each node says by itself, and that the far table is used once, in order.
@@ -82,22 +84,22 @@ Result<void> checkTree(const NodeTree& tree) {
     return {};
 }
 
-Result<std::uint64_t> checkLookup(const NodeTree& tree, const std::vector<std::uint32_t>& lookup) {
+Result<std::uint64_t> checkLookup(const NodeTree& tree, std::span<const std::uint32_t> lookup) {
     if (lookup.size() != tree.nodes.size()) return fail(ErrorCode::BadStructure, "not a lookup word a node");
-    std::vector<bool> covered(tree.nodes.size(), false);  // below a value that holds for a whole subtree
+    std::vector<std::uint8_t> covered(tree.nodes.size(), 0);  // below a value that holds for a whole subtree
     std::uint64_t values = 0;
     for (std::uint32_t i = 0; i < tree.nodes.size(); ++i) {
         const std::uint32_t d = tree.nodes[i];
         const std::uint32_t inner = node::innerMask(d);
         const std::uint32_t mask = lookup[i] & 0xffu;
         if (lookup[i] >> 8 != values) return badNode(i, "wrong value pointer");
-        if (covered[i] ? mask != 0 : (mask & ~inner) != node::leafMask(d))
+        if (covered[i] != 0 ? mask != 0 : (mask & ~inner) != node::leafMask(d))
             return badNode(i, "its values are not those of its leaves and of whole subtrees");
         values += countBits(mask);
-        if (inner == 0 || (!covered[i] && (mask & inner) == 0)) continue;
+        if (inner == 0 || (covered[i] == 0 && (mask & inner) == 0)) continue;
         std::uint32_t child = tree.firstChild(i);
         for (std::uint32_t rest = inner; rest != 0; rest &= rest - 1, ++child) {
-            if (covered[i] || (mask & rest & (~rest + 1)) != 0) covered[child] = true;
+            if (covered[i] != 0 || (mask & rest & (~rest + 1)) != 0) covered[child] = 1;
         }
     }
     return values;

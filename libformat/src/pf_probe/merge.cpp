@@ -2,9 +2,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <pfvox/files.hpp>
 #include <pfvox/probe_file.hpp>
 
-#include "io/atomic_file.hpp"
 #include "pf_probe/composer.hpp"
 #include "pf_probe/frame_codec.hpp"
 #include "pf_probe/probe_list.hpp"

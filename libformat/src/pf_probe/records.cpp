@@ -1,5 +1,7 @@
 #include "pf_probe/records.hpp"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include <bit>
@@ -35,7 +37,10 @@ glm::uvec3 toVec(const std::array<std::uint32_t, 3>& a) {
 }
 
 void append(std::vector<std::byte>& bytes, std::span<const std::byte> more) {
-    bytes.insert(bytes.end(), more.begin(), more.end());
+    // Not insert(): at -O3 GCC 12 warns falsely that it overflows.
+    const std::size_t at = bytes.size();
+    bytes.resize(at + more.size());
+    std::ranges::copy(more, bytes.begin() + static_cast<std::ptrdiff_t>(at));
 }
 
 template <class T>

@@ -1,5 +1,6 @@
 #include "pf_vox/asset_reader.hpp"
 
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
 #include <fmt/format.h>
@@ -200,6 +201,21 @@ class Reading {
         return true;
     }
 
+    /// Memory for all regions whose sections have the announced sizes; the others get their errors now.
+    static std::shared_ptr<MemoryPool> makePool(const Tables& tables, const RegionReader& reader,
+                                                std::vector<Result<void>>& results) {
+        std::size_t bytes = 0;
+        for (std::size_t i = 0; i < tables.regions.size(); ++i) {
+            const auto ofRegion = reader.poolBytes(i, tables.regions[i]);
+            if (ofRegion) {
+                bytes += *ofRegion;
+            } else {
+                results[i] = tl::make_unexpected(ofRegion.error());
+            }
+        }
+        return std::make_shared<MemoryPool>(bytes);
+    }
+
     bool readRegions(const Tables& tables, const SectionIndex& index) {
         std::vector<OctreeRegion*> targets;
         for (OctreeModel& model : outcome_.asset.models) {
@@ -207,8 +223,11 @@ class Reading {
         }
         std::vector<Result<void>> results(targets.size());
         const RegionReader reader(file_, index, outcome_.asset.materials);
+        const auto pool = makePool(tables, reader, results);
+        tbb::enumerable_thread_specific<RegionReader::Scratch> scratch;
         tbb::parallel_for(std::size_t{0}, targets.size(), [&](std::size_t i) {
-            auto region = reader.read(i, tables.regions[i], tables.palettes);
+            if (!results[i]) return;
+            auto region = reader.read(i, tables.regions[i], tables.palettes, pool, scratch.local());
             if (region) {
                 *targets[i] = *std::move(region);
             } else {

@@ -13,8 +13,8 @@ namespace pfvox {
 
 namespace {
 
-std::vector<std::uint8_t> bytesOf(const std::vector<std::uint32_t>& words) {
-    std::vector<std::uint8_t> bytes(words.size() * sizeof words[0]);
+std::vector<std::uint8_t> bytesOf(std::span<const std::uint32_t> words) {
+    std::vector<std::uint8_t> bytes(words.size_bytes());
     if (!words.empty()) std::memcpy(bytes.data(), words.data(), bytes.size());
     return bytes;
 }
@@ -31,7 +31,7 @@ std::vector<SectionContent> packRegion(const OctreeRegion& region, std::uint32_t
                         .region = id,
                         .count = region.valueCount(),
                         .texture = Texture::LocalSymbols,
-                        .raw = region.values});
+                        .raw = {region.values.begin(), region.values.end()}});
     if (!region.lod.empty()) {
         sections.push_back({.fourcc = "LODA",
                             .region = id,
@@ -57,7 +57,7 @@ std::vector<SectionContent> layOutRegion(const OctreeRegion& region, std::uint32
     add("LOOK", region.lookup.size(), bytesOf(region.lookup));
     if (!region.tree.farTable.empty())
         add("FARP", region.tree.farTable.size(), bytesOf(region.tree.farTable));
-    add("VALU", region.valueCount(), region.values);
+    add("VALU", region.valueCount(), {region.values.begin(), region.values.end()});
     if (!region.lod.empty()) add("LODR", region.lod.colors.size(), residentLod(region));
     return sections;
 }

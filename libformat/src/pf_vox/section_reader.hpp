@@ -35,6 +35,14 @@ Result<void> checkSectionSize(std::span<const std::byte> file, const layout::Sec
 Result<void> fillFromSection(std::span<const std::byte> file, const layout::Section& section,
                              std::span<std::byte> raw);
 
+/// Both halves, into memory that is there already.
+template <class Word>
+Result<void> readSectionInto(std::span<const std::byte> file, const layout::Section& section,
+                             std::span<Word> raw) {
+    PFVOX_CHECK(checkSectionSize(file, section, raw.size_bytes()));
+    return fillFromSection(file, section, std::as_writable_bytes(raw));
+}
+
 /// The raw content of a section, as bytes or little-endian words. `expectedCount` is what the tables say;
 /// nothing is allocated before both agree. Errors: BadStructure, ChecksumMismatch, UnsupportedFeature
 /// (codec).

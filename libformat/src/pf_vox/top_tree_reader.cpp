@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "octree/node_planes.hpp"
+#include "octree/plane_linker.hpp"
 #include "octree/tree_check.hpp"
 
 namespace pfvox {
@@ -70,8 +70,8 @@ Result<void> TopTreeReader::readTree(const layout::Model& record, NodeTree& tree
     const std::size_t n = record.topNodeCount;
     if (profile_ == Profile::Packed) {
         const auto planes = std::span(planes_).subspan(next_, octree::planeBytes(n, 0, false));
-        PFVOX_CHECK(
-            octree::linkPlanes(octree::cutPlanes(planes, n, record.topBranchCount, false), tree, nullptr));
+        octree::PlaneLinker linker;
+        PFVOX_CHECK(linker.linkTree(octree::cutPlanes(planes, n, record.topBranchCount, false), tree));
         if (tree.farTable.size() != record.topFarCount)
             return fail(ErrorCode::BadStructure, "wrong number of far pointers");
         return {};

@@ -72,6 +72,9 @@ ChannelKind kindOf(std::string type) {
     if (type == "DENSITY") return ChannelKind::Density;
     if (type == "COLOR-RGB" || type == "COLOR" || type == "RGB") return ChannelKind::Color;
     if (type == "DENSITY-COLOR") return ChannelKind::DensityColor;
+    if (type == "RED") return ChannelKind::Red;
+    if (type == "GREEN") return ChannelKind::Green;
+    if (type == "BLUE") return ChannelKind::Blue;
     if (type == "MATERIAL") return ChannelKind::Material;
     if (type == "CUSTOM") return ChannelKind::Custom;
     return ChannelKind::Other;

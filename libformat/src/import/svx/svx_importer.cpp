@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <optional>
+
 #include "import/importer.hpp"
 #include "import/svx/manifest.hpp"
 #include "import/svx/slice_reader.hpp"
@@ -42,10 +46,21 @@ Result<std::vector<std::byte>> readManifestBytes(const svx::ZipArchive& archive,
     return archive.read(entry->index, kMaxManifestBytes);
 }
 
+/// 0, 1, 2 for channels of red, green, blue.
+std::optional<std::size_t> primaryOf(svx::ChannelKind kind) {
+    switch (kind) {
+        case svx::ChannelKind::Red: return 0;
+        case svx::ChannelKind::Green: return 1;
+        case svx::ChannelKind::Blue: return 2;
+        default: return std::nullopt;
+    }
+}
+
 /// Chooses the channels to use and reports the others.
 Result<svx::ChannelPlan> planChannels(const svx::Manifest& manifest, Diagnostics& diagnostics) {
     svx::ChannelPlan plan;
     std::vector<std::string> skipped;
+    std::array<const svx::Channel*, 3> primaries{};
     for (const svx::Channel& channel : manifest.channels) {
         const bool density = channel.kind == svx::ChannelKind::Density;
         const bool color =
@@ -54,6 +69,8 @@ Result<svx::ChannelPlan> planChannels(const svx::Manifest& manifest, Diagnostics
             plan.density = &channel;
         } else if (color && plan.color == nullptr) {
             plan.color = &channel;
+        } else if (const auto primary = primaryOf(channel.kind); primary && primaries[*primary] == nullptr) {
+            primaries[*primary] = &channel;
         } else if (channel.kind == svx::ChannelKind::Material) {
             plan.materials.push_back(&channel);
         } else {
@@ -62,17 +79,25 @@ Result<svx::ChannelPlan> planChannels(const svx::Manifest& manifest, Diagnostics
                                   : channel.type);
         }
     }
+    if (plan.color == nullptr && std::ranges::find(primaries, nullptr) == primaries.end()) {
+        plan.primaries = primaries;
+    } else {
+        for (const svx::Channel* channel : primaries) {
+            if (channel != nullptr) skipped.push_back(channel->type);
+        }
+    }
     for (const std::string& name : skipped) {
         diagnostics.warn("svx-channel-skipped",
                          fmt::format("channel {} has no meaning for a voxel model and is left out", name));
     }
-    if (plan.density == nullptr && plan.color == nullptr && plan.materials.empty()) {
+    if (plan.density == nullptr && !plan.hasColors() && plan.materials.empty()) {
         return fail(
             ErrorCode::NothingToConvert,
             "the manifest names no DENSITY, MATERIAL or COLOR-RGB channel that could make a voxel model");
     }
-    if (plan.color != nullptr && !plan.materials.empty()) {
-        const bool needed = plan.density == nullptr && plan.color->kind != svx::ChannelKind::DensityColor;
+    if (plan.hasColors() && !plan.materials.empty()) {
+        const bool densityColor = plan.color != nullptr && plan.color->kind == svx::ChannelKind::DensityColor;
+        const bool needed = plan.density == nullptr && !densityColor;
         diagnostics.note("svx-materials-unused",
                          "colours are kept, material ids are not: a voxel has one material");
         if (!needed) plan.materials.clear();
@@ -121,6 +146,9 @@ Result<VoxelAsset> importSvx(const SourceBytes& source, const ImportSettings& se
                             diagnostics);
     if (plan.density != nullptr) PFVOX_CHECK(reader.checkPresence(*plan.density));
     if (plan.color != nullptr) PFVOX_CHECK(reader.checkPresence(*plan.color));
+    for (const svx::Channel* channel : plan.primaries) {
+        if (channel != nullptr) PFVOX_CHECK(reader.checkPresence(*channel));
+    }
     for (const svx::Channel* channel : plan.materials) PFVOX_CHECK(reader.checkPresence(*channel));
 
     VoxelAsset asset;

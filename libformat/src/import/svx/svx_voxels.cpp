@@ -36,7 +36,11 @@ class SliceDecoder {
                 return isSolid(static_cast<double>(value) / density.maximum);
             });
         }
-        if (plan_.color != nullptr) PFVOX_CHECK(decodeColors(slice, content));
+        if (plan_.color != nullptr) {
+            PFVOX_CHECK(decodeColors(slice, content));
+        } else if (plan_.hasColors()) {
+            PFVOX_CHECK(decodePrimaries(slice, content));
+        }
         if (!plan_.materials.empty()) PFVOX_CHECK(decodeMaterials(slice, content));
         return content;
     }
@@ -48,18 +52,32 @@ class SliceDecoder {
         PFVOX_TRY(ColorImage, image, reader_.color(*plan_.color, slice));
         content.colors = std::move(image.pixels);
         if (!content.solid.empty()) return {};
-        if (!image.hasAlpha) {
-            return fail(
-                ErrorCode::UnsupportedFeature,
-                fmt::format(
-                    "channel {} gives colours, but no channel says where matter is: a DENSITY channel, a "
-                    "MATERIAL channel or an alpha channel is needed",
-                    plan_.color->type));
-        }
+        if (!image.hasAlpha) return plan_.materials.empty() ? failWithoutMatter(plan_.color->type) : Result<void>{};
         content.solid.resize(content.colors.size());
         std::ranges::transform(content.colors, content.solid.begin(),
                                [&](glm::u8vec4 color) { return isSolid(color.a / 255.0); });
         return {};
+    }
+
+    /// Three channels of one component each.
+    Result<void> decodePrimaries(std::uint32_t slice, SliceContent& content) {
+        if (content.solid.empty() && plan_.materials.empty()) return failWithoutMatter(plan_.primaries[0]->type);
+        for (std::size_t c = 0; c < plan_.primaries.size(); ++c) {
+            PFVOX_TRY(const ScalarImage, image, reader_.scalar(*plan_.primaries[c], slice));
+            content.colors.resize(image.values.size(), glm::u8vec4{0, 0, 0, 255});
+            for (std::size_t i = 0; i < image.values.size(); ++i) {
+                const std::uint32_t scaled = (image.values[i] * 255u + image.maximum / 2u) / image.maximum;
+                content.colors[i][static_cast<int>(c)] = static_cast<std::uint8_t>(scaled);
+            }
+        }
+        return {};
+    }
+
+    static Result<void> failWithoutMatter(const std::string& channel) {
+        return fail(ErrorCode::UnsupportedFeature,
+                    fmt::format("channel {} gives colours, but no channel says where matter is: a DENSITY channel, a "
+                                "MATERIAL channel or an alpha channel is needed",
+                                channel));
     }
 
     /// The largest fraction wins; of equal ones the first channel. Voxels without any get the material after
@@ -159,7 +177,7 @@ Result<void> readVoxels(SliceReader& reader, const ChannelPlan& plan, const Mani
     const std::uint32_t sliceCount = reader.stack().sliceCount();
     SliceDecoder decoder(reader, plan, settings.svx.threshold);
     std::optional<ColorPalette> palette;
-    if (plan.color != nullptr) {
+    if (plan.hasColors()) {
         palette.emplace(std::min<std::size_t>(kMaxColors, limits.maxMaterials));
         PFVOX_CHECK(collectColors(decoder, sliceCount, *palette));
         asset.materials = colorMaterials(*palette);

@@ -1,6 +1,5 @@
 #include "import/vdb/grid_colors.hpp"
 
-#include <openvdb/openvdb.h>
 #include <pfvox/assert.hpp>
 
 #include <algorithm>
@@ -106,6 +105,26 @@ std::uint8_t srgbByteOf(float linear) {
     static const std::array<float, 255> kSteps = makeSteps();
     if (!(linear > 0.0f)) return 0;
     return static_cast<std::uint8_t>(std::ranges::upper_bound(kSteps, linear) - kSteps.begin());
+}
+
+openvdb::GridBase::Ptr joinChannels(const openvdb::FloatGrid& red, const openvdb::FloatGrid& green,
+                                    const openvdb::FloatGrid& blue) {
+    const openvdb::Vec3s background(red.background(), green.background(), blue.background());
+    auto tree = std::make_shared<openvdb::Vec3STree>(red.tree(), background, openvdb::TopologyCopy());
+    // The union is as fine as the finest of the three, so that one value holds for a whole tile.
+    tree->topologyUnion(green.tree());
+    tree->topologyUnion(blue.tree());
+    const auto r = red.getConstAccessor();
+    const auto g = green.getConstAccessor();
+    const auto b = blue.getConstAccessor();
+    for (auto value = tree->beginValueOn(); value; ++value) {
+        const openvdb::Coord at = value.getCoord();
+        value.setValue(openvdb::Vec3s(r.getValue(at), g.getValue(at), b.getValue(at)));
+    }
+    auto grid = openvdb::Vec3SGrid::create(tree);
+    grid->setTransform(red.transform().copy());
+    grid->setName(red.getName());
+    return grid;
 }
 
 GridColors makeGridColors(const openvdb::GridBase::ConstPtr& grid, MaterialIndex firstMaterial) {

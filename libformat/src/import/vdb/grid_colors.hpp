@@ -2,6 +2,7 @@
 #pragma once
 
 #include <openvdb/Grid.h>
+#include <openvdb/openvdb.h>
 
 #include <memory>
 #include <pfvox/voxel_model.hpp>
@@ -22,6 +23,11 @@ struct GridColors {
     std::size_t distinctColors = 0;        ///< before joining
     std::unique_ptr<const Shader> shader;  ///< shares the tree of the grid
 };
+
+/// Float grids of red, green and blue as one vector grid. What is inactive in all of them becomes their backgrounds.
+/// Precondition: equal transforms.
+openvdb::GridBase::Ptr joinChannels(const openvdb::FloatGrid& red, const openvdb::FloatGrid& green,
+                                    const openvdb::FloatGrid& blue);
 
 /// `grid` is a Vec3SGrid or Vec3DGrid.
 GridColors makeGridColors(const openvdb::GridBase::ConstPtr& grid, MaterialIndex firstMaterial);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 
 namespace pfvox::import::vdb {
 
@@ -20,6 +21,11 @@ bool isColorName(const std::string& name) {
                                                      "rgb", "diffuse", "albedo", "basecolor"};
     return std::ranges::find(kNames, lowerCase(name)) != kNames.end();
 }
+
+/// How programs name the float grids of red, green and blue: Blender's smoke has color_r, vectors that were split into
+/// components have Cd.x or Cd.r.
+constexpr std::array<std::array<std::string_view, 3>, 4> kChannelSuffixes{
+    {{"_r", "_g", "_b"}, {".r", ".g", ".b"}, {".x", ".y", ".z"}, {"_x", "_y", "_z"}}};
 
 std::string nameAndType(const GridDescriptor& grid) {
     return fmt::format("grid \"{}\" ({})", grid.displayName, grid.type);
@@ -49,6 +55,39 @@ std::string obstacle(const GridDescriptor& grid) {
     if (grid.treePos == 0)
         return fmt::format("{} has a transform of unknown type {}", nameAndType(grid), grid.transformType);
     return {};
+}
+
+bool isFloat(const GridDescriptor& grid) {
+    return grid.type == "Tree_float_5_4_3" && obstacle(grid).empty();
+}
+
+/// The three float grids that give colours together, or none.
+std::vector<std::size_t> findChannels(const std::vector<GridDescriptor>& grids) {
+    std::map<std::string, std::size_t> floats;
+    for (std::size_t i = 0; i < grids.size(); ++i) {
+        if (isFloat(grids[i])) floats.emplace(lowerCase(grids[i].plainName()), i);
+    }
+    const auto find = [&](const std::string& name) {
+        const auto at = floats.find(name);
+        return at == floats.end() ? grids.size() : at->second;
+    };
+    for (const auto& [name, index] : floats) {
+        for (const auto& [red, green, blue] : kChannelSuffixes) {
+            if (!name.ends_with(red)) continue;
+            const std::string base = name.substr(0, name.size() - red.size());
+            if (!isColorName(base)) continue;
+            const std::vector<std::size_t> found{find(name), find(base + std::string(green)),
+                                                 find(base + std::string(blue))};
+            if (std::ranges::find(found, grids.size()) == found.end()) return found;
+        }
+    }
+    return {};
+}
+
+/// Of an export of pfvox: what only repeats the grids of materials.
+bool repeatsMaterials(const GridDescriptor& grid) {
+    const std::string_view role = grid.ownText(metadata::kRole);
+    return role == metadata::kDensityRole || role == metadata::kColorRole;
 }
 
 std::string listOf(const std::vector<GridDescriptor>& grids) {
@@ -82,17 +121,23 @@ Result<std::vector<std::size_t>> chooseByName(const std::vector<GridDescriptor>&
 Result<std::vector<std::size_t>> chooseUsable(const std::vector<GridDescriptor>& grids,
                                               Diagnostics& diagnostics) {
     std::vector<std::size_t> chosen;
-    std::vector<std::size_t> colors;
+    std::vector<std::size_t> vectors;
     std::vector<std::string> obstacles;
+    const std::vector<std::size_t> channels = findChannels(grids);
+    const bool hasMaterials = std::ranges::any_of(grids, [](const GridDescriptor& grid) {
+        return grid.ownText(metadata::kRole) == metadata::kMaterialRole && obstacle(grid).empty();
+    });
     for (std::size_t i = 0; i < grids.size(); ++i) {
+        if (hasMaterials && repeatsMaterials(grids[i])) continue;
+        if (std::ranges::find(channels, i) != channels.end()) continue;
         if (std::string reason = obstacle(grids[i]); !reason.empty()) {
             obstacles.push_back(std::move(reason));
         } else {
-            (kindOf(grids[i]) == GridKind::Vector ? colors : chosen).push_back(i);
+            (kindOf(grids[i]) == GridKind::Vector ? vectors : chosen).push_back(i);
         }
     }
-    // Colours alone still say where something is.
-    if (chosen.empty()) chosen = std::move(colors);
+    // Colours alone still say where something is, and vectors say it best.
+    if (chosen.empty()) chosen = vectors.empty() ? channels : std::move(vectors);
     if (chosen.empty() && !obstacles.empty()) return fail(ErrorCode::UnsupportedFeature, obstacles.front());
     if (chosen.empty()) return fail(ErrorCode::NothingToConvert, "the file holds no grid");
     for (std::string& reason : obstacles) diagnostics.warn("vdb-grid-skipped", std::move(reason));
@@ -124,12 +169,14 @@ GridKind kindOf(const GridDescriptor& grid) {
 Result<GridSelection> selectGrids(const std::vector<GridDescriptor>& grids,
                                   const std::vector<std::string>& names, Diagnostics& diagnostics) {
     PFVOX_TRY(auto, models, names.empty() ? chooseUsable(grids, diagnostics) : chooseByName(grids, names));
-    GridSelection selection{.models = std::move(models), .color = std::nullopt};
-    for (std::size_t i = 0; i < grids.size(); ++i) {
-        if (kindOf(grids[i]) != GridKind::Vector || !obstacle(grids[i]).empty()) continue;
-        selection.color = i;
-        break;
+    GridSelection selection{.models = std::move(models), .color = {}};
+    const bool colorable = std::ranges::any_of(
+        selection.models, [&](std::size_t i) { return kindOf(grids[i]) != GridKind::Integer; });
+    if (!colorable) return selection;
+    for (std::size_t i = 0; i < grids.size() && selection.color.empty(); ++i) {
+        if (kindOf(grids[i]) == GridKind::Vector && obstacle(grids[i]).empty()) selection.color = {i};
     }
+    if (selection.color.empty()) selection.color = findChannels(grids);
     return selection;
 }
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <pfvox/error.hpp>
 #include <string_view>
 #include <vector>
@@ -23,11 +22,12 @@ enum class GridKind : std::uint8_t {
 GridKind kindOf(const GridDescriptor& grid);
 
 struct GridSelection {
-    std::vector<std::size_t> models;   ///< indices of descriptors
-    std::optional<std::size_t> color;  ///< the grid that gives colours
+    std::vector<std::size_t> models;  ///< indices of descriptors
+    std::vector<std::size_t> color;   ///< gives colours: one vector grid, or float grids of red, green and blue
 };
 
-/// Chooses by name, or everything that can be a model when `names` is empty. Unusable grids are reported;
+/// Chooses by name, or everything that can be a model when `names` is empty; of an export of pfvox the grids of
+/// materials only, because the others say the same to other programs. Unusable grids are reported;
 /// they are an error when they were asked for or when nothing else is left. Errors: BadReference (no grid of
 /// a name; the message lists all), UnsupportedFeature, NothingToConvert.
 Result<GridSelection> selectGrids(const std::vector<GridDescriptor>& grids,

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <type_traits>
 
+#include "import/vdb/index_frame.hpp"
+
 namespace pfvox::import::vdb {
 
 namespace {
@@ -17,32 +19,6 @@ constexpr std::int64_t kLargestCoordinate = std::int64_t{1} << 30;
 constexpr int kLeafLog2 = 3;
 constexpr int kLowerLog2 = 7;
 constexpr int kUpperLog2 = 12;
-
-/// From index space to the voxels of the model: nothing, or a quarter turn that puts +z up.
-class Frame {
-  public:
-    explicit Frame(UpAxis up) : up_(up) {
-        for (std::uint32_t offset = 0; offset < kBrickVoxels; ++offset) {
-            const glm::uvec3 local{offset >> 6, (offset >> 3) & 7u, offset & 7u};
-            morton_[offset] = static_cast<std::uint16_t>(
-                mortonEncode(up == UpAxis::Y ? local : glm::uvec3{local.x, local.z, 7u - local.y}));
-        }
-    }
-
-    /// Lower corner of the cube that begins at `corner` in index space.
-    glm::ivec3 cube(const openvdb::Coord& corner, int edgeLog2) const {
-        if (up_ == UpAxis::Y) return {corner.x(), corner.y(), corner.z()};
-        const std::int64_t turned = -std::int64_t{corner.y()} - (std::int64_t{1} << edgeLog2);
-        return {corner.x(), corner.z(), static_cast<int>(turned)};
-    }
-
-    /// Place in a brick of a voxel, by its offset in the leaf node.
-    std::uint16_t mortonOf(std::uint32_t offset) const { return morton_[offset]; }
-
-  private:
-    UpAxis up_;
-    std::array<std::uint16_t, kBrickVoxels> morton_{};
-};
 
 /// Which voxels are solid, and the number that an integer grid gives them.
 template <class Value>
@@ -221,6 +197,18 @@ class TreeWalker {
     }
 
     Result<MaterialIndex> labelMaterial(const Value& value) requires kLabelled {
+        if (lastMaterial_ && value == lastLabel_) return *lastMaterial_;
+        PFVOX_TRY(const auto, material, lookUpLabel(value));
+        lastLabel_ = value;
+        lastMaterial_ = material;
+        return material;
+    }
+
+    Result<MaterialIndex> lookUpLabel(const Value& value) requires kLabelled {
+        if (settings_.known != nullptr) {
+            const auto known = settings_.known->find(static_cast<std::int64_t>(value));
+            if (known != settings_.known->end()) return known->second;
+        }
         const std::uint32_t material = labels_.materialOf(static_cast<std::int64_t>(value));
         if (material >= settings_.maxMaterials) {
             return fail(
@@ -240,10 +228,12 @@ class TreeWalker {
 
     const FillSettings& settings_;
     Rule<Value> rule_;
-    Frame frame_;
+    IndexFrame frame_;
     LabelTable& labels_;
     ModelBudget& budget_;
     VoxelModel& model_;
+    Value lastLabel_{};  ///< neighbours mostly have the same number
+    std::optional<MaterialIndex> lastMaterial_;
 };
 
 /// Writers often leave the class of a level set unset or call it fog. Densities are never below zero, so an

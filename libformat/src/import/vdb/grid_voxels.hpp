@@ -49,12 +49,16 @@ class LabelTable {
     std::map<std::int64_t, std::size_t> labels_;
 };
 
+/// Numbers that have a material already, because the file tells it.
+using KnownLabels = std::map<std::int64_t, MaterialIndex>;
+
 struct FillSettings {
     double threshold = 0.0;  ///< of fog volumes
     UpAxis upAxis = UpAxis::Y;
     std::uint32_t maxMaterials = 0;
     MaterialIndex plainMaterial = 0;  ///< of grids without colours or numbers
     const Shader* shader = nullptr;
+    const KnownLabels* known = nullptr;
 };
 
 /// Fills `model` with the solid voxels of a grid: of level sets those below zero, active or not; of all

@@ -72,15 +72,24 @@ Result<std::string> Fields::readString(const char* context) {
 }
 
 Result<void> Fields::skipMetadata(const char* context) {
+    PFVOX_CHECK(readMetadata(context));
+    return {};
+}
+
+Result<OwnMetadata> Fields::readMetadata(const char* context) {
+    OwnMetadata own;
     PFVOX_TRY(const auto, count, read<std::int32_t>(context));
     for (std::int32_t i = 0; i < count; ++i) {
-        PFVOX_TRY(const auto, name, readString(context));
+        PFVOX_TRY(auto, name, readString(context));
         PFVOX_TRY(const auto, type, readString(context));
         PFVOX_TRY(const auto, size, read<std::uint32_t>(context));
         PFVOX_CHECK(checkValue(name, type, size));
-        PFVOX_CHECK(take(size, context));
+        PFVOX_TRY(const auto, value, take(size, context));
+        if (type == "string" && name.starts_with(metadata::kPrefix)) {
+            own.insert_or_assign(std::move(name), std::string(io::asText(value)));
+        }
     }
-    return {};
+    return own;
 }
 
 Result<void> Fields::checkValue(const std::string& name, const std::string& type, std::uint32_t size) const {

@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 
+#include "import/vdb/pfvox_metadata.hpp"
 #include "io/byte_cursor.hpp"
 
 namespace pfvox::import::vdb {
@@ -39,6 +40,8 @@ class Fields {
 
     /// Steps over a metadata map: each entry has a name, a type name and a sized value.
     Result<void> skipMetadata(const char* context);
+    /// The same, but keeps what pfvox itself wrote.
+    Result<OwnMetadata> readMetadata(const char* context);
 
   private:
     Result<void> checkValue(const std::string& name, const std::string& type, std::uint32_t size) const;

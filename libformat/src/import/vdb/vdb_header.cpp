@@ -12,7 +12,6 @@ namespace pfvox::import::vdb {
 
 namespace {
 
-constexpr std::int64_t kMagic = 0x56444220;
 constexpr std::uint32_t kNewestVersionOfLibrary = 224;
 constexpr std::uint64_t kUuidBytes = 36;
 constexpr std::uint64_t kSmallestDescriptorBytes = 3 * 4 + 3 * 8;
@@ -124,7 +123,8 @@ Result<void> readGridHead(std::span<const std::byte> bytes, GridDescriptor& grid
     Fields fields(bytes.first(static_cast<std::size_t>(grid.endPos)), grid.gridPos);
     PFVOX_TRY(const auto, compression, fields.read<std::uint32_t>("grid compression"));
     grid.compression = compression;
-    PFVOX_CHECK(fields.skipMetadata("grid metadata"));
+    PFVOX_TRY(auto, own, fields.readMetadata("grid metadata"));
+    grid.own = std::move(own);
     PFVOX_TRY(auto, transform, fields.readString("grid transform"));
     grid.transformType = std::move(transform);
     for (const auto& [type, size] : kTransformBytes) {
@@ -160,8 +160,9 @@ std::string GridDescriptor::plainName() const {
     return uniqueName.substr(0, uniqueName.find(kSuffixSeparator));
 }
 
-bool looksLikeVdb(std::span<const std::byte> bytes) {
-    return io::ByteCursor(bytes).read<std::int64_t>().value_or(0) == kMagic;
+std::string_view GridDescriptor::ownText(std::string_view key) const {
+    const auto entry = own.find(key);
+    return entry == own.end() ? std::string_view{} : std::string_view(entry->second);
 }
 
 Result<VdbHeader> parseVdbHeader(std::span<const std::byte> bytes, const Limits& limits,

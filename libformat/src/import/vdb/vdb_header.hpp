@@ -13,6 +13,8 @@
 #include <string>
 #include <vector>
 
+#include "import/vdb/pfvox_metadata.hpp"
+
 namespace pfvox::import::vdb {
 
 struct GridDescriptor {
@@ -27,9 +29,12 @@ struct GridDescriptor {
     std::uint64_t gridPos = 0;  ///< compression flags, metadata, transform
     std::uint64_t treePos = 0;  ///< the tree; unset when the transform is of an unknown kind
     std::uint64_t endPos = 0;
+    OwnMetadata own;  ///< what an export of pfvox noted
 
     /// The name without the suffix that makes it unique.
     std::string plainName() const;
+    /// An entry of `own`, empty where it is absent.
+    std::string_view ownText(std::string_view key) const;
 };
 
 struct VdbHeader {
@@ -43,8 +48,8 @@ struct VdbHeader {
 inline constexpr std::uint32_t kOldestFileVersion = 222;
 inline constexpr std::uint32_t kNewestFileVersion = 225;
 
-/// Whether the bytes begin with the magic number.
-bool looksLikeVdb(std::span<const std::byte> bytes);
+/// The first eight bytes of every VDB file.
+inline constexpr std::int64_t kMagic = 0x56444220;
 
 /// Every string, metadata value and offset up to the tree of each grid lies inside the file afterwards. Files
 /// that were written to a stream have no offsets; there the trees are walked to find the next grid (errors of

@@ -77,6 +77,9 @@ class VdbReader::Stream {
 VdbReader::VdbReader(std::span<const std::byte> bytes, VdbHeader header) : header_(std::move(header)) {
     openvdb::initialize();
     stream_ = std::make_unique<Stream>(bytes, header_);
+    for (std::size_t i = 0; i < header_.grids.size(); ++i) {
+        if (header_.grids[i].instanceParent.empty()) treeOwners_.emplace(header_.grids[i].uniqueName, i);
+    }
 }
 
 VdbReader::~VdbReader() = default;
@@ -94,9 +97,7 @@ openvdb::GridBase::Ptr VdbReader::read(std::size_t index) {
 std::size_t VdbReader::treeOwner(std::size_t index) const {
     const std::string& parent = header_.grids.at(index).instanceParent;
     if (parent.empty()) return index;
-    for (std::size_t i = 0; i < header_.grids.size(); ++i) {
-        if (header_.grids[i].uniqueName == parent && header_.grids[i].instanceParent.empty()) return i;
-    }
+    if (const auto owner = treeOwners_.find(parent); owner != treeOwners_.end()) return owner->second;
     OPENVDB_THROW(openvdb::LookupError,
                   "the grid whose tree \"" + header_.grids[index].displayName + "\" shares is missing");
 }

@@ -8,6 +8,8 @@
 #include <cstddef>
 #include <memory>
 #include <span>
+#include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "import/vdb/vdb_header.hpp"
@@ -36,6 +38,7 @@ class VdbReader {
     class Stream;
 
     VdbHeader header_;
+    std::unordered_map<std::string, std::size_t> treeOwners_;  ///< grids with a tree of their own, by unique name
     std::unique_ptr<Stream> stream_;
 };
 

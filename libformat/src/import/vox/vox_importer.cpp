@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "import/importer.hpp"
+#include "import/merge.hpp"
 #include "import/vox/instances.hpp"
-#include "import/vox/merge.hpp"
 #include "import/vox/model_set.hpp"
 #include "import/vox/slab6.hpp"
 #include "import/vox/vox_file.hpp"
@@ -134,7 +134,11 @@ void addModels(std::vector<VoxelModel> models, const std::vector<bool>& wanted,
 
 Result<void> addMerged(const std::vector<VoxelModel>& models, const std::vector<GridInstance>& instances,
                        const Limits& limits, VoxelAsset& asset, Diagnostics& diagnostics) {
-    PFVOX_TRY(MergedModel, merged, mergeInstances(models, instances, limits));
+    std::vector<PlacedModel> placed;
+    for (const GridInstance& instance : instances) {
+        placed.push_back({.model = instance.model, .mergedFromModel = instance.worldFromModel});
+    }
+    PFVOX_TRY(MergedModel, merged, mergeModels(models, placed, limits));
     if (merged.replacedVoxels > 0) {
         diagnostics.warn("vox-overlap",
                          fmt::format("{} voxels lie where a later instance has one too, which replaces them",

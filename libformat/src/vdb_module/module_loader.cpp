@@ -1,0 +1,86 @@
+#include "vdb_module/module_loader.hpp"
+
+#include <dlfcn.h>
+#include <fmt/format.h>
+#include <pfvox_module_id.hpp>
+
+#include <algorithm>
+#include <string_view>
+#include <system_error>
+
+namespace pfvox {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kFileName = "pfvox_vdb.so";
+
+tl::unexpected<Error> unavailable(std::string message) {
+    return fail(ErrorCode::UnsupportedFeature, "OpenVDB files cannot be used: " + std::move(message));
+}
+
+/// What dlerror says, which is empty only if nothing failed.
+std::string loaderError() {
+    const char* text = ::dlerror();
+    return text != nullptr ? text : "unknown reason";
+}
+
+Result<const VdbModule*> open(const fs::path& file) {
+    // Now, not when a function is first called: a missing symbol would end the program there. The handle stays open:
+    // OpenVDB registers itself with libraries that outlive it.
+    void* const handle = ::dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
+    if (handle == nullptr) {
+        return unavailable(fmt::format("{} (the OpenVDB library must be installed)", loaderError()));
+    }
+    const auto entry = reinterpret_cast<VdbModuleEntry>(::dlsym(handle, kVdbModuleEntry));
+    if (entry == nullptr) return unavailable(fmt::format("{} is no module of pfvox", file.string()));
+    const VdbModule* const module = entry();
+    if (const std::string_view id = module->buildId; id != PFVOX_MODULE_ID) {
+        return unavailable(
+            fmt::format("the module {} is of another build ({}, this is {}): install both from one package",
+                        file.string(), id, PFVOX_MODULE_ID));
+    }
+    return module;
+}
+
+}  // namespace
+
+std::vector<fs::path> moduleFolders() {
+    std::vector<fs::path> folders;
+    std::error_code error;
+    if (const fs::path program = fs::read_symlink("/proc/self/exe", error); !error) {
+        const fs::path folder = program.parent_path();
+        for (const char* relative : {PFVOX_MODULES_FROM_BIN, "../lib/pfvox", "."}) {
+            fs::path candidate = (folder / relative).lexically_normal();
+            if (std::ranges::find(folders, candidate) == folders.end())
+                folders.push_back(std::move(candidate));
+        }
+    }
+    folders.emplace_back(PFVOX_MODULES_INSTALLED);
+    return folders;
+}
+
+Result<const VdbModule*> openVdbModule(std::span<const fs::path> folders) {
+    std::string places;
+    for (const fs::path& folder : folders) {
+        const fs::path file = folder / kFileName;
+        std::error_code ignored;
+        if (fs::exists(file, ignored)) return open(file);
+        places += fmt::format("{}{}", places.empty() ? "" : ", ", folder.string());
+    }
+    return unavailable(fmt::format("the module {} is in none of {}: install it with pfvox or put it beside the program",
+                                   kFileName, places));
+}
+
+Result<const VdbModule*> vdbModule() {
+    static const Result<const VdbModule*> kModule = openVdbModule(moduleFolders());
+    return kModule;
+}
+
+ReportTo reportTo(Diagnostics& diagnostics) {
+    return {.sink = &diagnostics,
+            .report = [](Diagnostics& sink, Diagnostic diagnostic) { sink.report(std::move(diagnostic)); }};
+}
+
+}  // namespace pfvox
