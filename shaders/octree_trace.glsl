@@ -10,7 +10,7 @@
 // one step. A solid cell that rounding makes the ray miss by a hair counts as met: closed surfaces have no leaks at
 // their edges. The loop touches nodes and nothing else; materials are looked up once, for the hit that counts.
 //
-// Rays have any non-zero direction; t counts in its lengths. A ray that starts in a solid voxel hits it at t = 0.
+// Rays have any direction but zero (one whose components are all below 1e-36 hits nothing); t counts in its lengths. A ray that starts in a solid voxel hits it at t = 0.
 //
 // The includer defines PFVOX_TRACE_GROUP_SIZE, the invocations of its workgroup. With PFVOX_TRACE_LOD a node that is
 // narrower than the ray's cone stands for all below it, where the scene has levels of detail; the test costs a tenth of
@@ -30,6 +30,7 @@ layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer Ma
 layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer Scene { SceneHeader header; };
 
 const float kInfinity = 1e30;
+const float kShortestDirection = 1e-36;  // devices may take anything below 1.2e-38 for zero
 const int kCubeScale = 23;   // cells of scale s have an edge of 2^(s - 23) cubes
 const int kRootScale = 21;   // of the root's cells
 const uint kNoMaterial = 0xffffffffu;
@@ -162,7 +163,8 @@ bool beginWalk(ModelRecord model, vec3 origin, vec3 direction, float tMax, float
     walk.nodes = model.nodes;
     walk.index = 0u;
     walk.node = WideNodes(model.nodes).at[0];
-    return walk.tLength >= 0.0;
+    // A direction that the device takes for zero has no length to count in.
+    return walk.tLength >= 0.0 && walk.speed >= kShortestDirection;
 }
 
 // The axis whose plane comes first. At an edge one axis goes before the other, so that no step is diagonal and nothing

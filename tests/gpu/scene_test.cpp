@@ -1,4 +1,6 @@
 // Scene: what goes to the device, what is left out, and what the statistics say.
+#include <bit>
+#include <cmath>
 #include <pfvox/gpu_scene.hpp>
 #include <pfvox/ray_query.hpp>
 
@@ -73,6 +75,54 @@ TEST_F(SceneTest, RaysEndAtTMax) {
         EXPECT_FALSE(castOne(scene, ray, mode).hit);
         ray.tMax = 4.1f;
         EXPECT_TRUE(castOne(scene, ray, mode).hit);
+    }
+}
+
+// Any finite ray ends, with a finite answer, however absurd.
+TEST_F(SceneTest, EveryFiniteRayEnds) {
+    const OctreeAsset asset = build(demoRoom());
+    const gpu::ScenePart part{.asset = &asset};
+    PFVOX_ASSERT_VALUE(const gpu::Scene, scene, buildScene({&part, 1}));
+    PFVOX_ASSERT_VALUE(const gpu::RayQuery, query, gpu::RayQuery::create(device()));
+    Random random(11);
+    const auto anyFloat = [&] {
+        for (;;) {
+            const auto value = std::bit_cast<float>(static_cast<std::uint32_t>(random.next()));
+            if (std::isfinite(value)) return value;
+        }
+    };
+    const auto anyOf = [&](float usual) {
+        switch (random.integer(0, 4)) {
+            case 0: return 0.0f;
+            case 1: return anyFloat();
+            case 2: return std::nextafter(usual, 1e9f);
+            default: return usual;
+        }
+    };
+    std::vector<gpu::GpuRay> rays;
+    for (int i = 0; i < 50'000; ++i) {
+        gpu::GpuRay ray;
+        for (int axis = 0; axis < 3; ++axis) {
+            ray.origin[axis] = anyOf(static_cast<float>(random.integer(-10, 70)) * 0.1f);
+            ray.direction[axis] = anyOf(static_cast<float>(random.uniform(-1.0, 1.0)));
+        }
+        if (ray.direction == glm::vec3(0.0f)) ray.direction.x = 1.0f;
+        rays.push_back(ray);
+    }
+    for (const gpu::RayMode mode : {gpu::RayMode::ClosestHit, gpu::RayMode::AnyHit}) {
+        PFVOX_ASSERT_VALUE(const gpu::RayBatch, batch, query.cast(device(), scene, rays, mode));
+        std::size_t hits = 0;
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+            const gpu::GpuHit& hit = batch.hits[i];
+            EXPECT_FALSE(hit.capped) << i;
+            if (!hit.hit) continue;
+            ++hits;
+            if (mode == gpu::RayMode::AnyHit) continue;
+            EXPECT_TRUE(std::isfinite(hit.t)) << i;
+            EXPECT_NEAR(glm::length(hit.normal), 1.0f, 1e-4f) << i;
+            EXPECT_TRUE(asset.models[0].at(hit.voxel).has_value()) << i;
+        }
+        EXPECT_GT(hits, 5'000u);
     }
 }
 

@@ -1,8 +1,11 @@
 // Pictures of scenes made here, in every view mode, against golden pictures.
 #include "support/picture_fixture.hpp"
 
+#include <algorithm>
+
 #include "support/image_compare.hpp"
 #include "support/procedural.hpp"
+#include "support/reference_picture.hpp"
 
 namespace pfvox::test {
 namespace {
@@ -38,6 +41,26 @@ TEST_F(PictureTest, RoomInEveryView) {
 TEST_F(PictureTest, ComposedScene) {
     PFVOX_ASSERT_VALUE(const Shot, shot, draw(build(composedScene()), kSmall));
     EXPECT_TRUE(matchesGolden(shot.picture, "composed-final"));
+}
+
+// The reference caster's picture of the same scene: what is hit, its normal and its colour, pixel by pixel.
+TEST_F(PictureTest, AgreesWithTheReferenceCaster) {
+    for (const VoxelAsset& voxels : {demoRoom(), composedScene()}) {
+        const OctreeAsset asset = build(voxels);
+        for (const viewer::ViewMode mode : {viewer::ViewMode::Normals, viewer::ViewMode::Albedo}) {
+            viewer::PictureSettings settings = kSmall;
+            settings.samplesPerPixel = 1;
+            settings.mode = mode;
+            PFVOX_ASSERT_VALUE(const Shot, shot, draw(asset, settings));
+            const viewer::Picture reference = referencePicture(asset, cameraOf(asset, settings), settings);
+            const auto hits = static_cast<std::size_t>(std::ranges::count_if(
+                reference.pixels, [](std::uint32_t pixel) { return pixel != 0; }));
+            EXPECT_GT(hits, 10'000u);
+            EXPECT_LE(differingShare(shot.picture, reference), 0.001) << toString(mode);
+            // Pixels whose ray passes an edge within a rounding may be hits on one side only.
+            EXPECT_NEAR(static_cast<double>(shot.statistics.hits), static_cast<double>(hits), 0.001 * 320 * 240);
+        }
+    }
 }
 
 TEST_F(PictureTest, EmptySceneIsSky) {
