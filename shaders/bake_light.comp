@@ -1,5 +1,5 @@
-// Indirect light at the surfaces that a probe sees: paths from each texel's surface point, 16 of one texel an
-// invocation, summed in their order. A workgroup is one tile and one batch of samples.
+// Indirect light at the surfaces that a probe sees: paths from each texel's surface point, up to 16 of one
+// texel an invocation, summed in their order. A workgroup is one tile and one batch of samples.
 //
 // The estimate of I = E / pi is the mean over cosine-distributed directions of the radiance that comes in. Light at a
 // vertex is looked for twice, by a ray to an emitter and by the scattered direction, weighted by the balance heuristic.
@@ -16,6 +16,8 @@
 #include "bake_rays.glsl"
 
 layout(local_size_x = kBakeGroupSize) in;
+// Of a batch: fewer where a driver bounds the loops of an invocation (docs/decisions/013-baker.md).
+layout(constant_id = 1) const uint kSamplesPerRun = kBatchSamples;
 
 layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer SeenTexels { SeenTexel at[]; };
 layout(buffer_reference, std430, buffer_reference_align = 8) readonly buffer Items { uvec2 at[]; };
@@ -243,8 +245,8 @@ void main() {
 
     RayCounts counts = RayCounts(0u, TraceStatistics(0u, 0u));
     vec3 total = vec3(0.0);
-    uint next = item.y * kBatchSamples;
-    uint end = mask == 0u ? next : next + kBatchSamples;
+    uint next = item.y;
+    uint end = mask == 0u ? next : next + kSamplesPerRun;
     bool alive = false;
     Path path;
     for (;;) {

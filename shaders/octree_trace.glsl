@@ -453,13 +453,15 @@ Surface surfaceOf(Scene sceneBuffer, Ray ray, Hit hit) {
     surface.leafLog2 = hit.scale - int(model.leafScale);
     surface.lodColor = 0u;
     WideNode node = WideNodes(model.nodes).at[hit.node];
+#ifdef PFVOX_TRACE_LOD
     if (isLevelOfDetail(model, node, hit)) {
         uvec2 lod = Lods(model.lods).at[hit.node];
         surface.lodColor = lod.x;
         surface.material = lod.y;
-    } else {
-        surface.material = voxelMaterial(model, node, cellAt(uvec3(found.leafMin), 0));
+        return surface;
     }
+#endif
+    surface.material = voxelMaterial(model, node, cellAt(uvec3(found.leafMin), 0));
     return surface;
 }
 

@@ -85,7 +85,7 @@ PFVOX_STRUCT(LightPush) {
     uvec2 texels;
     vec3 probe;
     uint depthEdge;
-    uvec2 items;     // uvec2[]: tile, batch; one a workgroup
+    uvec2 items;     // uvec2[]: tile, first sample; one a workgroup
     uvec2 sums;      // vec4[kTileTexels] for each of them: radiance of kBatchSamples paths; w: bits of the rays cast
     uint lightEdge;
     uint probeIndex;  // in the grid

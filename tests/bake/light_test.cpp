@@ -278,11 +278,13 @@ TEST_F(LightTest, AgreesWithTheReference) {
     BakeSettings settings = plain(16, 1024);
     settings.maxBounces = 3;
     const LitProbe probe = lightAt(scene, position, settings);
-    for (const std::size_t i : {std::size_t{5 + 16 * 4}, std::size_t{12 + 16 * 9}, std::size_t{3 + 16 * 13}, std::size_t{8 + 16 * 8}}) {
-        ASSERT_GT(probe.seen[i].metres, 0.0f);
+    std::size_t compared = 0;
+    for (std::size_t i = 5; i < probe.light.size() && compared < 6; i += 19) {
+        if (probe.seen[i].metres < 0.0f) continue;
+        ++compared;
         const glm::dvec3 normal(probe.seen[i].normal);
         const ReferenceLight expected =
-            referenceLight(scene, glm::dvec3(pointOf(probe, i, 16, position)), normal, 4000, 3);
+            referenceLight(scene, glm::dvec3(pointOf(probe, i, 16, position)), normal, 20000, 3);
         const double sigma = std::hypot(expected.error, probe.errors[i]);
         const double found = static_cast<double>(probe.light[i].x + probe.light[i].y + probe.light[i].z) / 3.0;
         const double wanted = (expected.mean.x + expected.mean.y + expected.mean.z) / 3.0;
@@ -291,6 +293,7 @@ TEST_F(LightTest, AgreesWithTheReference) {
         EXPECT_GT(wanted, 0.0);
         EXPECT_NEAR(found, wanted, 3.5 * sigma);
     }
+    EXPECT_EQ(compared, 6u);
 }
 
 // --- Leaks ---

@@ -37,7 +37,7 @@ struct BakeSettings {
     float noiseTarget = 0.02f;
     float noiseFloor = 0.01f;  ///< radiance
     /// Reflections a path makes behind its texel: 0 = only light that reaches the texel's surface straight from
-    /// emitters and sky. Nothing = no limit but roulette (and a cap of 16).
+    /// emitters and sky. Nothing = no limit but roulette (and a cap of 128).
     std::optional<std::uint32_t> maxBounces;
     /// The probes to bake; the file is then a shard. Nothing = all.
     std::optional<ProbeRange> range;

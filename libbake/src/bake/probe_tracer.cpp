@@ -11,6 +11,8 @@ namespace pfvox::bake {
 namespace {
 
 constexpr std::size_t kMostItems = 4096;
+/// llvmpipe seems to bound the loops of an invocation: docs/decisions/013-baker.md.
+constexpr std::uint32_t kSoftwareSamplesPerRun = 1;
 
 class Stopwatch {
   public:
@@ -79,9 +81,12 @@ Result<ProbeTracer::Buffers> ProbeTracer::createBuffers(gpu::Device& device, con
 
 Result<ProbeTracer> ProbeTracer::create(gpu::Device& device, const gpu::Scene& scene, const TracerInput& input,
                                         const BakeSettings& settings) {
-    const std::uint32_t constants[] = {input.hasGlass ? 1u : 0u};
+    const bool software = device.info().kind == gpu::DeviceKind::Software;
+    const std::uint32_t samplesPerRun = software ? kSoftwareSamplesPerRun : shared::kBatchSamples;
+    const std::uint32_t constants[] = {input.hasGlass ? 1u : 0u, samplesPerRun};
     PFVOX_TRY(gpu::Program, geometry,
-              device.createProgram(shaders::kBakeGeometry, sizeof(shared::GeometryPush), "bake geometry", constants));
+              device.createProgram(shaders::kBakeGeometry, sizeof(shared::GeometryPush), "bake geometry",
+                                   std::span(constants).first(1)));
     PFVOX_TRY(gpu::Program, light,
               device.createProgram(shaders::kBakeLight, sizeof(shared::LightPush), "bake light", constants));
     const TracedEdges edges = tracedEdges(settings.resolution);
@@ -90,6 +95,7 @@ Result<ProbeTracer> ProbeTracer::create(gpu::Device& device, const gpu::Scene& s
                               gpu::bytesOf(sceneRecord(scene, input, settings, buffers.emitters))));
     ProbeTracer tracer(device, std::move(geometry), std::move(light), std::move(buffers));
     tracer.edges_ = edges;
+    tracer.samplesPerRun_ = samplesPerRun;
     tracer.depth_ = input.depth;
     tracer.rules_ = {.minBatches = settings.minSamples / shared::kBatchSamples,
                      .maxBatches = settings.maxSamples / shared::kBatchSamples,
@@ -128,22 +134,40 @@ Result<std::vector<shared::SeenTexel>> ProbeTracer::see(const glm::vec3& positio
     return seen;
 }
 
+Result<double> ProbeTracer::runBatches(std::span<const LightItem> items, const shared::LightPush& push,
+                                       std::vector<glm::vec4>& sums, std::uint64_t& rays) {
+    sums.assign(items.size() * shared::kTileTexels, glm::vec4(0.0f));
+    std::vector<glm::vec4> results(sums.size());
+    std::vector<glm::uvec2> starts(items.size());
+    const gpu::Dispatch dispatch{.program = &light_,
+                                 .pushConstants = gpu::bytesOf(push),
+                                 .groups = {static_cast<std::uint32_t>(items.size()), 1, 1}};
+    double gpuMs = 0.0;
+    for (std::uint32_t first = 0; first < shared::kBatchSamples; first += samplesPerRun_) {
+        for (std::size_t i = 0; i < items.size(); ++i)
+            starts[i] = {items[i].tile, items[i].batch * shared::kBatchSamples + first};
+        PFVOX_CHECK(device_->upload(buffers_.items, 0, std::as_bytes(std::span(starts))));
+        PFVOX_TRY(const double, ms, device_->run({&dispatch, 1}));
+        gpuMs += ms;
+        PFVOX_CHECK(device_->download(buffers_.sums, 0, std::as_writable_bytes(std::span(results))));
+        for (std::size_t i = 0; i < results.size(); ++i) {
+            sums[i] += glm::vec4(glm::vec3(results[i]), 0.0f);
+            rays += std::bit_cast<std::uint32_t>(results[i].w);
+        }
+    }
+    return gpuMs;
+}
+
 Result<void> ProbeTracer::runItems(std::span<const LightItem> items, const shared::LightPush& push, TileSums& sums,
                                    const WorkDone& done) {
     std::vector<glm::vec4> results;
     for (std::size_t first = 0; first < items.size();) {
         const auto part = items.subspan(first, std::min(items.size() - first, lightPace_.size()));
-        PFVOX_CHECK(device_->upload(buffers_.items, 0, std::as_bytes(part)));
-        const gpu::Dispatch dispatch{.program = &light_,
-                                     .pushConstants = gpu::bytesOf(push),
-                                     .groups = {static_cast<std::uint32_t>(part.size()), 1, 1}};
         const Stopwatch watch;
-        PFVOX_TRY(const double, gpuMs, device_->run({&dispatch, 1}));
-        lightPace_.took(part.size(), watch.seconds(), dispatchSeconds_);
-        results.resize(part.size() * shared::kTileTexels);
-        PFVOX_CHECK(device_->download(buffers_.sums, 0, std::as_writable_bytes(std::span(results))));
         std::uint64_t rays = 0;
-        for (const glm::vec4& sum : results) rays += std::bit_cast<std::uint32_t>(sum.w);
+        PFVOX_TRY(const double, gpuMs, runBatches(part, push, results, rays));
+        const double runs = double{shared::kBatchSamples} / samplesPerRun_;
+        lightPace_.took(part.size(), watch.seconds() / runs, dispatchSeconds_);
         for (std::size_t i = 0; i < part.size(); ++i)
             sums.add(part[i], std::span(results).subspan(i * shared::kTileTexels, shared::kTileTexels));
         PFVOX_CHECK(done({.rays = rays, .gpuMs = gpuMs}));

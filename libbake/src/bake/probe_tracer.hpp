@@ -57,6 +57,9 @@ class ProbeTracer {
     ProbeTracer(gpu::Device& device, gpu::Program geometry, gpu::Program light, Buffers buffers)
         : device_(&device), geometry_(std::move(geometry)), light_(std::move(light)), buffers_(std::move(buffers)) {}
     static Result<Buffers> createBuffers(gpu::Device& device, const TracerInput& input, const TracedEdges& edges);
+    /// Sums of kBatchSamples paths for each texel of each item; the milliseconds that the device took.
+    Result<double> runBatches(std::span<const LightItem> items, const shared::LightPush& push,
+                              std::vector<glm::vec4>& sums, std::uint64_t& rays);
     Result<void> runItems(std::span<const LightItem> items, const shared::LightPush& push, TileSums& sums,
                           const WorkDone& done);
 
@@ -77,6 +80,7 @@ class ProbeTracer {
     gpu::Program light_;
     Buffers buffers_;
     TracedEdges edges_;
+    std::uint32_t samplesPerRun_ = shared::kBatchSamples;
     DepthEncoding depth_;
     TileRules rules_;
     double dispatchSeconds_ = 0.25;
