@@ -38,6 +38,7 @@ class BoxRoom {
         }
     }
 
+    void add(const Box& box) { boxes_.push_back(box); }
     glm::vec3 size() const { return size_; }
     const std::vector<Box>& boxes() const { return boxes_; }
 

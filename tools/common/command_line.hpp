@@ -39,6 +39,12 @@ std::unique_ptr<CLI::App> makeTool(const std::string& name, const HelpText& text
 /// A subcommand of the tool.
 CLI::App& addCommand(CLI::App& tool, const std::string& name, const HelpText& text);
 
+/// A subcommand and what to do when it was chosen. The options that `run` reads live as long as `run` does.
+struct Command {
+    const CLI::App* app = nullptr;
+    std::function<ExitCode()> run;
+};
+
 /// Names of option groups, in the order of the help page.
 namespace group {
 inline constexpr const char* kInputOutput = "Input and output";

@@ -48,6 +48,12 @@ void exitOnInterrupt(std::function<void()> lastWords) {
     }).detach();
 }
 
+bool isInterrupted() {
+    Gate& gate = writeGate();
+    const std::scoped_lock lock(gate.mutex);
+    return gate.isEnding;
+}
+
 WriteGuard::WriteGuard() {
     Gate& gate = writeGate();
     std::unique_lock lock(gate.mutex);

@@ -14,6 +14,9 @@ namespace pfvox::tools {
 /// process ends; it may print.
 void exitOnInterrupt(std::function<void()> lastWords);
 
+/// Whether a signal has come. Whoever holds a WriteGuard for long asks, and comes to an end.
+bool isInterrupted();
+
 /// Keeps an interrupt from ending the process while it lives. May be handed from thread to thread.
 class WriteGuard {
   public:

@@ -1,17 +1,9 @@
 // The subcommands of vox2pf: one source file each.
 #pragma once
 
-#include <functional>
-
 #include "common/command_line.hpp"
 
 namespace pfvox::tools {
-
-/// A subcommand and what to do when it was chosen. The options that `run` reads live as long as `run` does.
-struct Command {
-    const CLI::App* app = nullptr;
-    std::function<ExitCode()> run;
-};
 
 /// Sources to PF_VOX files.
 Command makeConvertCommand(CLI::App& tool);

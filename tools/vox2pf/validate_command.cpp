@@ -1,11 +1,8 @@
-#include <fmt/format.h>
-
 #include <memory>
 #include <pfvox/files.hpp>
 #include <pfvox/pf_vox.hpp>
 
-#include "common/json.hpp"
-#include "common/text.hpp"
+#include "common/findings.hpp"
 #include "vox2pf/commands.hpp"
 #include "vox2pf/pf_vox_inputs.hpp"
 
@@ -21,40 +18,6 @@ HelpText helpText() {
         .examples = {{"vox2pf validate hall.pf_vox", "one file"},
                      {"vox2pf validate build/assets", "every PF_VOX file of a folder"},
                      {"vox2pf validate --json hall.pf_vox", "one JSON object a file"}}};
-}
-
-Json findingsJson(const std::filesystem::path& file, const std::vector<Finding>& findings) {
-    Json list = Json::array();
-    for (const Finding& finding : findings) {
-        Json json;
-        json["id"] = finding.id;
-        json["context"] = finding.context;
-        json["offsetBytes"] = finding.offsetBytes ? Json(*finding.offsetBytes) : Json(nullptr);
-        json["message"] = finding.message;
-        list.push_back(json);
-    }
-    Json json;
-    json["file"] = file.string();
-    json["valid"] = findings.empty();
-    json["findings"] = list;
-    return json;
-}
-
-std::string findingsText(const std::filesystem::path& file, const std::vector<Finding>& findings,
-                         const Reporter& reporter) {
-    using Style = Reporter::Style;
-    if (findings.empty())
-        return fmt::format("{}: {}\n", file.string(), reporter.styled(Style::Good, "valid"));
-    std::string text;
-    for (const Finding& finding : findings) {
-        const std::string offset = finding.offsetBytes ? fmt::format("@0x{:x}", *finding.offsetBytes) : "";
-        const bool both = !finding.context.empty() && !offset.empty();
-        const std::string place = finding.context + (both ? " " : "") + offset;
-        text += fmt::format("{}: {}{}{} [{}]\n", file.string(), place, place.empty() ? "" : ": ",
-                            finding.message, finding.id);
-    }
-    return text + fmt::format("{}: {}\n", file.string(),
-                              reporter.styled(Style::Bad, plural(findings.size(), "finding")));
 }
 
 }  // namespace

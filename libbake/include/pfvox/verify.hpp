@@ -1,0 +1,79 @@
+// Verify: a picture of the indirect light from a probe field beside one from path tracing, and how far they are apart.
+//
+//     scene, probes, camera -> [ProbeVerifier::render] -> VerifiedPicture -> [scoreOf] -> VerifyScore
+//
+// Both pictures show I = E / pi, not what materials make of it. Lengths are metres, light is linear RGB.
+#pragma once
+
+#include <array>
+#include <pfvox/gpu_probes.hpp>
+#include <pfvox/gpu_scene.hpp>
+#include <pfvox/probe_query.hpp>
+#include <pfvox/scene.hpp>
+#include <vector>
+
+namespace pfvox {
+
+struct VerifySettings {
+    std::uint32_t width = 320;
+    std::uint32_t height = 180;
+    std::uint32_t samples = 256;        ///< paths a pixel of the reference
+    std::uint32_t maxBounces = 128;     ///< as the field was baked
+};
+
+struct VerifiedPixel {
+    glm::vec3 lookup{0.0f};
+    glm::vec3 reference{0.0f};
+    glm::vec3 noise{0.0f};  ///< half the difference of two halves of the reference's samples
+    gpu::ProbeTier tier = gpu::ProbeTier::None;
+    bool surface = false;   ///< else the camera sees nothing here, and the rest is empty
+};
+
+struct VerifiedPicture {
+    std::uint32_t width = 0;
+    std::uint32_t height = 0;
+    std::vector<VerifiedPixel> pixels;  ///< rows from the top
+    double gpuMs = 0.0;
+};
+
+struct VerifyScore {
+    std::uint64_t surfacePixels = 0;
+    std::uint64_t withoutValue = 0;  ///< of these: no tier, or not finite
+    std::array<double, gpu::kProbeTierCount> tierShares{};
+    double meanReference = 0.0;      ///< of all channels
+    double rmse = 0.0;
+    double relativeRmse = 0.0;       ///< over the mean of the reference
+    double relativeTexelRmse = 0.0;  ///< of the pixels of tier Texels, over their mean
+    double relativeNoise = 0.0;      ///< what of it the noise of the reference explains
+    double exposure = 1.0;           ///< for PSNR and FLIP: 0.5 / mean
+    double psnrDecibel = 0.0;        ///< of exposed values clamped to [0, 1]; 999 when they are equal
+    double meanFlip = 0.0;           ///< over pixels with surface
+    std::vector<float> flip;         ///< of all pixels
+    std::uint64_t tierPixels(gpu::ProbeTier tier) const;
+};
+
+/// What is looked at; all of it outlives the call.
+struct VerifyInput {
+    const LoadedScene& loaded;  ///< sun and sky
+    const gpu::Scene& scene;
+    const gpu::GpuProbes& probes;
+    const Camera& camera;
+};
+
+class ProbeVerifier {
+  public:
+    /// Errors: those of Device::createProgram.
+    static Result<ProbeVerifier> create(gpu::Device& device);
+
+    /// Device work is cut into pieces of some rows and samples. Errors: GpuOutOfMemory, GpuLost.
+    Result<VerifiedPicture> render(gpu::Device& device, const VerifyInput& input,
+                                   const VerifySettings& settings) const;
+
+  private:
+    explicit ProbeVerifier(gpu::Program program) : program_(std::move(program)) {}
+    gpu::Program program_;
+};
+
+VerifyScore scoreOf(const VerifiedPicture& picture);
+
+}  // namespace pfvox

@@ -1,0 +1,209 @@
+// Indirect light at a surface point from a probe field: I = E / pi, never without a value where any probe is active.
+//
+//     tier 1  texels of the cell's probes that see this very surface
+//     tier 3  the eight probes around, by their irradiance and moments (Majercik et al. 2019, "Dynamic Diffuse Global
+//             Illumination with Ray-Traced Irradiance Fields")
+//     tier 4  the nearest active probe
+//
+// Tiers are blended by how well the texels agree. Tier 2, tracing through the field, is probe_trace.glsl: it answers
+// secondary rays, whose surface point comes back here.
+#ifndef PFVOX_PROBE_LOOKUP_GLSL
+#define PFVOX_PROBE_LOOKUP_GLSL
+
+#include "probe_field.glsl"
+
+const float kCompactWeightFloor = 1e-4;
+
+struct ProbeLight {
+    vec3 indirect;
+    vec3 weights;  // of tiers 1, 3 and 4; they sum to 1, or all are 0
+    uint tier;     // the heaviest
+};
+
+// ---- Tier 1 ----
+
+struct SurfacePoint {
+    vec3 position;
+    vec3 normal;
+};
+
+// Share of the depth texels under one light texel that show the plane of the surface.
+float agreementOf(ProbeFieldRecord field, ProbeEntry probe, SurfacePoint point, ivec2 lightTexel) {
+    uint block = max(field.depthEdge / field.lightEdge, 1u);
+    float height = dot(point.position - probe.position, point.normal);  // of the plane, as the probe sees it
+    uint agreeing = 0u;
+    for (uint i = 0u; i < block * block; ++i) {
+        uint x = min(uint(lightTexel.x) * block + i % block, field.depthEdge - 1u);
+        uint y = min(uint(lightTexel.y) * block + i / block, field.depthEdge - 1u);
+        uint word = ProbeWords(probe.depthNormal).at[x + field.depthEdge * y];
+        vec3 direction = directionOfTexel(x, y, field.depthEdge);
+        float cosine = dot(direction, point.normal);
+        if (cosine >= -1e-4 || height >= 0.0) continue;
+        float onPlane = height / cosine;
+        if (seesSurface(word, onPlane * direction, point.normal, field.depthEdge, field.depthScaleAndLogRange)) ++agreeing;
+    }
+    return float(agreeing) / float(block * block);
+}
+
+// Light of the texels around the direction to the point, those only that agree; w = how far they do, 0 to 1.
+vec4 lightSeenBy(ProbeFieldRecord field, ProbeEntry probe, SurfacePoint point) {
+    vec2 at = texelCoordinate(point.position - probe.position, field.lightEdge) - 0.5;
+    ivec2 low = ivec2(floor(at));
+    vec2 fraction = at - vec2(low);
+    vec4 sum = vec4(0.0);
+    for (int i = 0; i < 4; ++i) {
+        ivec2 offset = ivec2(i & 1, i >> 1);
+        ivec2 texel = wrappedTexel(low + offset, field.lightEdge);
+        vec2 near = mix(1.0 - fraction, fraction, vec2(offset));
+        float share = agreementOf(field, probe, point, texel);
+        float weight = near.x * near.y * share * share;
+        if (weight <= 0.0) continue;
+        uint word = ProbeWords(probe.light).at[uint(texel.x) + field.lightEdge * uint(texel.y)];
+        sum += weight * vec4(unpackLight(word), 1.0);
+    }
+    return sum.w > 0.0 ? vec4(sum.rgb / sum.w, min(sum.w, 1.0)) : vec4(0.0);
+}
+
+// First word of the proximity cell's list, or kNoProbeIndex outside the grid.
+uint proximityListOf(ProbeFieldRecord field, vec3 point) {
+    if (field.cellCounts.x == 0) return kNoProbeIndex;
+    vec3 at = (point - field.cellStart) / field.cellStep;
+    if (any(lessThan(at, vec3(0.0))) || any(greaterThanEqual(at, vec3(field.cellCounts)))) return kNoProbeIndex;
+    ivec3 cell = ivec3(at);
+    return kProbesOfCell * uint(cell.x + field.cellCounts.x * (cell.y + field.cellCounts.y * cell.z));
+}
+
+vec4 lightOfTexels(ProbeFieldRecord field, SurfacePoint point) {
+    if (field.lightEdge == 0u || field.depthEdge == 0u) return vec4(0.0);
+    // A point on the face between two cells belongs to the one that it is seen from.
+    uint list = proximityListOf(field, point.position + 0.25 * field.voxelMetres * point.normal);
+    if (list == kNoProbeIndex) return vec4(0.0);
+    vec4 sum = vec4(0.0);
+    float unseen = 1.0;
+    for (uint k = 0u; k < kProbesOfCell; ++k) {
+        uint index = ProbeWords(field.cells).at[list + k];
+        if (index == kNoProbeIndex) break;
+        ProbeEntry probe = ProbeEntries(field.probes).at[index];
+        if (probe.isActive == 0u) continue;
+        vec4 seen = lightSeenBy(field, probe, point);
+        if (seen.w <= 0.0) continue;
+        vec3 toPoint = point.position - probe.position;
+        float footprint = texelAngle(field.lightEdge);
+        float weight = seen.w / max(dot(toPoint, toPoint) * footprint * footprint, 1e-12);
+        sum += weight * vec4(seen.rgb, 1.0);
+        unseen *= 1.0 - seen.w;
+    }
+    return sum.w > 0.0 ? vec4(sum.rgb / sum.w, 1.0 - unseen) : vec4(0.0);
+}
+
+// ---- Tiers 3 and 4 ----
+
+// Words of a map with border, around the coordinate of a direction; weights as a bilinear read has them.
+struct BilinearRead {
+    uint index;   // of the lower texel
+    uint rowStep;
+    vec2 fraction;
+};
+BilinearRead bilinearRead(vec3 direction, uint interior) {
+    vec2 at = borderedCoordinate(direction, interior) - 0.5;
+    ivec2 low = clamp(ivec2(floor(at)), ivec2(0), ivec2(interior));
+    uint edge = interior + 2u;
+    return BilinearRead(uint(low.x) + edge * uint(low.y), edge, clamp(at - vec2(low), vec2(0.0), vec2(1.0)));
+}
+
+vec3 irradianceOf(ProbeFieldRecord field, ProbeEntry probe, vec3 normal) {
+    BilinearRead r = bilinearRead(normal, field.irradianceEdge);
+    ProbeWords words = ProbeWords(probe.irradiance);
+    vec3 low = mix(unpackLight(words.at[r.index]), unpackLight(words.at[r.index + 1u]), r.fraction.x);
+    uint next = r.index + r.rowStep;
+    vec3 high = mix(unpackLight(words.at[next]), unpackLight(words.at[next + 1u]), r.fraction.x);
+    return mix(low, high, r.fraction.y);
+}
+
+vec2 momentsOf(ProbeFieldRecord field, ProbeEntry probe, vec3 direction) {
+    BilinearRead r = bilinearRead(direction, field.momentsEdge);
+    ProbeWords words = ProbeWords(probe.moments);
+    vec2 low = mix(unpackMoments(words.at[r.index]), unpackMoments(words.at[r.index + 1u]), r.fraction.x);
+    uint next = r.index + r.rowStep;
+    vec2 high = mix(unpackMoments(words.at[next]), unpackMoments(words.at[next + 1u]), r.fraction.x);
+    return mix(low, high, r.fraction.y);
+}
+
+// Chebyshev's bound on the share of what the lobe sees beyond this distance, made steeper.
+float visibilityFrom(ProbeFieldRecord field, ProbeEntry probe, vec3 toPoint) {
+    if (field.momentsEdge == 0u) return 1.0;
+    float distance = length(toPoint);
+    if (distance < 1e-6) return 1.0;
+    vec2 moments = momentsOf(field, probe, toPoint);
+    float d = min(distance / field.momentRange, 1.0);
+    if (d <= moments.x) return 1.0;
+    float variance = max(moments.y - moments.x * moments.x, 1e-6);
+    float beyond = d - moments.x;
+    float bound = variance / (variance + beyond * beyond);
+    return bound * bound * bound;
+}
+
+float compactWeight(ProbeFieldRecord field, ProbeEntry probe, SurfacePoint point, vec3 biased) {
+    vec3 toProbe = probe.position - point.position;
+    float distance = length(toProbe);
+    float facing = distance > 1e-6 ? 0.5 * dot(toProbe, point.normal) / distance + 0.5 : 1.0;
+    float weight = (facing * facing + 0.05) * visibilityFrom(field, probe, biased - probe.position);
+    // Little is made less, or many faint probes behind walls would add up.
+    if (weight < 0.2) weight *= weight * weight / 0.04;
+    return max(weight, kCompactWeightFloor);
+}
+
+vec4 lightOfGrid(ProbeFieldRecord field, SurfacePoint point) {
+    vec3 biased = point.position + min(2.0 * field.voxelMetres, 0.2 * min(field.step.x, min(field.step.y, field.step.z))) * point.normal;
+    ivec3 cell = probeCellOf(field, biased);
+    vec3 fraction = clamp((biased - field.start) / field.step - vec3(cell), vec3(0.0), vec3(1.0));
+    vec4 sum = vec4(0.0);
+    for (uint corner = 0u; corner < 8u; ++corner) {
+        if (!cornerExists(field, corner)) continue;
+        ProbeEntry probe = probeAtCorner(field, cell, corner);
+        if (probe.isActive == 0u) continue;
+        vec3 near = max(mix(1.0 - fraction, fraction, vec3(cornerOffset(corner))), vec3(0.001));
+        float weight = near.x * near.y * near.z * compactWeight(field, probe, point, biased);
+        sum += weight * vec4(irradianceOf(field, probe, point.normal), 1.0);
+    }
+    return sum.w > 0.0 ? vec4(sum.rgb / sum.w, 1.0) : vec4(0.0);
+}
+
+vec4 lightOfNearest(ProbeFieldRecord field, SurfacePoint point) {
+    ivec3 at = ivec3(round(clamp((point.position - field.start) / field.step, vec3(0.0), vec3(field.counts - 1))));
+    uint nearest = ProbeEntries(field.probes).at[probeIndexAt(field, at)].nearestActive;
+    if (nearest == kNoProbeIndex) return vec4(0.0);
+    return vec4(irradianceOf(field, ProbeEntries(field.probes).at[nearest], point.normal), 1.0);
+}
+
+// ---- All of it ----
+
+// `normal` is that of the surface, unit, on the side that is seen.
+ProbeLight lookUpProbes(ProbeFieldRecord field, vec3 position, vec3 normal) {
+    SurfacePoint point = SurfacePoint(position, normal);
+    vec4 texels = lightOfTexels(field, point);
+    vec4 rest = vec4(0.0);
+    bool fromGrid = false;
+    if (texels.w < 1.0 && field.irradianceEdge != 0u) {
+        rest = lightOfGrid(field, point);
+        fromGrid = rest.w > 0.0;
+        if (!fromGrid) rest = lightOfNearest(field, point);
+    }
+    float first = rest.w > 0.0 ? texels.w : texels.w > 0.0 ? 1.0 : 0.0;
+    ProbeLight light;
+    light.indirect = first * texels.rgb + (1.0 - first) * rest.rgb;
+    light.weights = vec3(first, fromGrid ? 1.0 - first : 0.0, !fromGrid && rest.w > 0.0 ? 1.0 - first : 0.0);
+    light.tier = first > 0.5 ? kTierTexels : fromGrid ? kTierCompact : rest.w > 0.0 ? kTierNearest : kTierNone;
+    if (light.tier == kTierNone && texels.w > 0.0) light.tier = kTierTexels;
+    return light;
+}
+
+// What a picture of the tiers shows: green texels, yellow traced, blue the eight around, red the nearest, magenta none.
+vec3 tierColour(uint tier) {
+    if (tier == kTierTexels) return vec3(0.20, 0.62, 0.24);
+    if (tier == kTierTraced) return vec3(0.85, 0.75, 0.15);
+    if (tier == kTierCompact) return vec3(0.16, 0.36, 0.78);
+    return tier == kTierNearest ? vec3(0.80, 0.18, 0.12) : vec3(1.0, 0.0, 1.0);
+}
+
+#endif

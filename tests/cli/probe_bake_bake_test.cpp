@@ -1,0 +1,140 @@
+// probe-bake bake and verify as child processes, on whatever device there is.
+#include <chrono>
+#include <thread>
+
+#include "cli/probe_bake_fixture.hpp"
+#include "support/scene_assets.hpp"
+
+namespace pfvox::test {
+namespace {
+
+using ::testing::HasSubstr;
+using nlohmann::json;
+
+class ProbeBakeScene : public ProbeBake {
+  protected:
+    void SetUp() override { writePfVox(folder / "box.pf_vox", boxAsset({{0, 0, 0}, {12, 6, 12}}, 0.1)); }
+
+    void writeScene(const std::string& name, const std::string& model, const std::string& grid) const {
+        writeText(folder / name, grid + "\n[[models]]\nname = \"box\"\npath = \"" + model + "\"\n");
+    }
+    static std::vector<std::string> tiny(std::vector<std::string> arguments) {
+        for (const char* word : {"--resolution", "16,8,4,6", "--samples", "32"}) arguments.emplace_back(word);
+        return arguments;
+    }
+
+    static constexpr const char* kGrid =
+        "probeGridPos = [-0.5, 0.3, -0.5]\nprobeGridStep = 1.1\nprobeGridCount = [3, 2, 3]\nproximityGridSize = [8, 8, 8]\n";
+};
+
+TEST_F(ProbeBakeScene, BakesAndLeavesAloneWhatIsUpToDate) {
+    writeScene("scene.toml", "box.pf_vox", kGrid);
+    const ProcessResult baked = run(tiny({"scene.toml", "-o", "out.pf_probe", "--json", "--depfile", "out.d"}));
+    ASSERT_EQ(baked.exitCode, 0) << baked.err;
+    const json report = json::parse(baked.out);
+    expectSchema("bake", report);
+    EXPECT_EQ(report["status"], "baked");
+    EXPECT_EQ(report["probes"], 18);
+    EXPECT_EQ(readText(folder / "out.d"), "out.pf_probe: scene.toml box.pf_vox\n");
+    EXPECT_EQ(run({"validate", "out.pf_probe"}).exitCode, 0);
+    EXPECT_FALSE(std::filesystem::exists(folder / "out.pf_probe.journal"));
+
+    const ProcessResult again = run(tiny({"scene.toml", "-o", "out.pf_probe", "--json"}));
+    EXPECT_EQ(json::parse(again.out)["status"], "up-to-date");
+    const auto time = std::filesystem::last_write_time(folder / "out.pf_probe");
+    const ProcessResult forced = run(tiny({"scene.toml", "-o", "out.pf_probe", "--force", "--if-changed", "--explain"}));
+    EXPECT_THAT(forced.out, HasSubstr("--force"));
+    EXPECT_EQ(std::filesystem::last_write_time(folder / "out.pf_probe"), time);
+    const ProcessResult seeded = run(tiny({"scene.toml", "-o", "out.pf_probe", "--seed", "5", "--explain"}));
+    EXPECT_THAT(seeded.out, HasSubstr("changed since the last bake"));
+}
+
+TEST_F(ProbeBakeScene, ShardsMergeToTheWhole) {
+    writeScene("scene.toml", "box.pf_vox", kGrid);
+    ASSERT_EQ(run(tiny({"scene.toml", "-o", "whole.pf_probe"})).exitCode, 0);
+    ASSERT_EQ(run(tiny({"scene.toml", "-o", "a.pf_probe", "--probes", "0:7"})).exitCode, 0);
+    ASSERT_EQ(run(tiny({"scene.toml", "-o", "b.pf_probe", "--probes", "7:18"})).exitCode, 0);
+    ASSERT_EQ(run({"merge", "a.pf_probe", "b.pf_probe", "-o", "merged.pf_probe"}).exitCode, 0);
+    const ProcessResult compared = run({"compare", "--equal", "whole.pf_probe", "merged.pf_probe"});
+    EXPECT_EQ(compared.exitCode, 0) << compared.out << compared.err;
+    EXPECT_EQ(run(tiny({"scene.toml", "-o", "a.pf_probe", "--probes", "7:19"})).exitCode, 2);
+    EXPECT_EQ(run(tiny({"scene.toml", "-o", "a.pf_probe", "--probes", "7"})).exitCode, 2);
+}
+
+TEST_F(ProbeBakeScene, CtrlCLeavesWhatResumeTakes) {
+    writeScene("scene.toml", "box.pf_vox", kGrid);
+    const std::vector<std::string> arguments{PFVOX_PROBE_BAKE, "scene.toml",   "-o",        "out.pf_probe", "--resolution",
+                                             "64,32,4,6",      "--samples",    "512"};
+    ProcessSetup setup{.environment = {}, .input = {}, .folder = folder.path()};
+    Process process(arguments, setup);
+    const std::filesystem::path journal = folder / "out.pf_probe.journal";
+    std::error_code absent;
+    for (int i = 0; i < 600; ++i) {
+        const auto bytes = std::filesystem::file_size(journal, absent);
+        if (!absent && bytes > 30000) break;  // a probe or two
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+    process.send(SIGINT);
+    const ProcessResult stopped = process.finish();
+    ASSERT_EQ(stopped.exitCode, 130) << stopped.err;
+    EXPECT_THAT(stopped.err, HasSubstr("--resume"));
+    EXPECT_FALSE(std::filesystem::exists(folder / "out.pf_probe"));
+    ASSERT_TRUE(std::filesystem::exists(journal));
+
+    std::vector<std::string> resume(arguments.begin() + 1, arguments.end());
+    resume.insert(resume.end(), {"--resume", "--json"});
+    const ProcessResult resumed = run(resume);
+    ASSERT_EQ(resumed.exitCode, 0) << resumed.err;
+    EXPECT_GT(json::parse(resumed.out)["reused"], 0);
+    EXPECT_FALSE(std::filesystem::exists(journal));
+}
+
+TEST_F(ProbeBakeScene, MistakesAreNamed) {
+    writeScene("missing.toml", "absent.pf_vox", kGrid);
+    const ProcessResult missing = run(tiny({"missing.toml", "-o", "out.pf_probe"}));
+    EXPECT_EQ(missing.exitCode, 3);
+    EXPECT_THAT(missing.err, HasSubstr("absent.pf_vox"));
+
+    std::filesystem::copy_file(std::filesystem::path(PFVOX_DATA_DIR) / "lamp.vox", folder / "lamp.vox");
+    writeScene("source.toml", "lamp.vox", kGrid);
+    const ProcessResult source = run(tiny({"source.toml", "-o", "out.pf_probe"}));
+    EXPECT_EQ(source.exitCode, 4);
+    EXPECT_THAT(source.err, HasSubstr("vox2pf"));
+
+    writeScene("outside.toml", "box.pf_vox", "probeGridPos = [50, 0, 0]\nprobeGridStep = 1\nprobeGridCount = [2, 2, 2]\n");
+    const ProcessResult outside = run(tiny({"outside.toml", "-o", "out.pf_probe"}));
+    EXPECT_EQ(outside.exitCode, 4);
+    EXPECT_THAT(outside.err, HasSubstr("outside the scene"));
+
+    writeScene("zero.toml", "box.pf_vox", "probeGridCount = [0, 2, 2]\n");
+    const ProcessResult zero = run(tiny({"zero.toml", "-o", "out.pf_probe"}));
+    EXPECT_EQ(zero.exitCode, 4);
+    EXPECT_THAT(zero.err, HasSubstr("probeGridCount"));
+
+    writeScene("scene.toml", "box.pf_vox", kGrid);
+    EXPECT_EQ(run(tiny({"scene.toml", "-o", "out.pf_probe", "--device", "no such device"})).exitCode, 6);
+    EXPECT_EQ(run(tiny({"scene.toml", "-o", "box.pf_vox/out.pf_probe"})).exitCode, 3);
+    EXPECT_FALSE(std::filesystem::exists(folder / "out.pf_probe"));
+    EXPECT_EQ(run({"bake", "--list-devices"}).exitCode, 0);
+}
+
+TEST_F(ProbeBakeScene, VerifyLooksThroughTheCameras) {
+    writeScene("scene.toml", "box.pf_vox",
+               std::string(kGrid) + "[[cameras]]\nname = \"front\"\nposition = [0.6, 1.2, 3]\ntarget = [0.6, 0.3, 0.6]\n");
+    ASSERT_EQ(run(tiny({"scene.toml", "-o", "out.pf_probe"})).exitCode, 0);
+    const ProcessResult result =
+        run({"verify", "--json", "scene.toml", "out.pf_probe", "--size", "48x32", "--samples", "16", "-o", "pictures"});
+    ASSERT_EQ(result.exitCode, 0) << result.err;
+    const json score = json::parse(result.out);
+    expectSchema("verify", score);
+    EXPECT_GT(score["surfacePixels"], 100);
+    EXPECT_EQ(score["withoutValue"], 0);
+    for (const char* name : {"front-probes.png", "front-reference.png", "front-flip.png", "front-tiers.png"})
+        EXPECT_TRUE(std::filesystem::exists(folder / "pictures" / name)) << name;
+    EXPECT_EQ(run({"verify", "scene.toml", "out.pf_probe", "--size", "48x32", "--samples", "2", "--max-flip", "0"}).exitCode, 1);
+    EXPECT_EQ(run({"verify", "scene.toml", "out.pf_probe", "--camera", "absent"}).exitCode, 4);
+    EXPECT_EQ(run({"verify", "scene.toml", "out.pf_probe", "--size", "48"}).exitCode, 2);
+}
+
+}  // namespace
+}  // namespace pfvox::test

@@ -1,0 +1,216 @@
+// The lookup of indirect light on the device: against known light, and against a slow twin for the compact layer.
+#include <pfvox/probe_query.hpp>
+
+#include <numeric>
+
+#include "support/room_field.hpp"
+
+namespace pfvox::test {
+namespace {
+
+using gpu::ProbeLookup;
+using gpu::ProbePoint;
+using gpu::ProbeTier;
+
+constexpr ProbeResolution kSmall{.depth = 256, .light = 128, .irradiance = 8, .moments = 14};
+
+class ProbeLookupTest : public GpuTest {
+  protected:
+    static std::vector<ProbeLookup> lookUp(const ProbeField& field, const std::vector<SurfaceSample>& samples,
+                                           gpu::GpuProbeSettings settings = {}) {
+        const auto probes = uploadField(device(), field, settings);
+        EXPECT_TRUE(probes) << describe(probes.error());
+        const auto query = gpu::ProbeQuery::create(device());
+        EXPECT_TRUE(query);
+        std::vector<ProbePoint> points;
+        for (const SurfaceSample& sample : samples) points.push_back({sample.position, sample.normal});
+        auto found = query->lookUp(device(), *probes, points);
+        EXPECT_TRUE(found);
+        return found ? *std::move(found) : std::vector<ProbeLookup>{};
+    }
+
+    static bool hasValue(const ProbeLookup& found) {
+        const float sum = found.weights.x + found.weights.y + found.weights.z;
+        return found.tier != ProbeTier::None && std::isfinite(found.indirect.x + found.indirect.y + found.indirect.z) &&
+               std::abs(sum - 1.0f) < 1e-4f;
+    }
+};
+
+TEST_F(ProbeLookupTest, EveryPointHasAValueAndMostAreExact) {
+    const BoxRoom room(24);
+    ProbeField field = makeRoomField(room, {.resolution = kSmall, .albedo = 1.0f});
+    addProximity(field, room, {24, 10, 24});
+    const std::vector<SurfaceSample> samples = roomSurface(room, 50000, 3);
+    const std::vector<ProbeLookup> found = lookUp(field, samples);
+    ASSERT_EQ(found.size(), samples.size());
+    std::size_t without = 0;
+    std::size_t exact = 0;
+    double squares = 0.0;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        without += hasValue(found[i]) ? 0u : 1u;
+        if (found[i].tier != ProbeTier::Texels) continue;
+        ++exact;
+        const glm::vec3 apart = found[i].indirect - smoothLight(samples[i].position, samples[i].normal);
+        squares += static_cast<double>(glm::dot(apart, apart)) / 3.0;
+    }
+    const double share = static_cast<double>(exact) / static_cast<double>(samples.size());
+    const double rmse = std::sqrt(squares / static_cast<double>(exact));
+    RecordProperty("texel_percent", std::to_string(100 * share));
+    RecordProperty("texel_rmse", std::to_string(rmse));
+    EXPECT_EQ(without, 0u);
+    EXPECT_GE(share, 0.9);
+    EXPECT_LE(rmse, 0.03);  // of a mean of 0.75: texels wider than what they blend
+}
+
+/// What stands in for the maps of an inactive probe is never read: there is nothing at its addresses. Even so, all points
+/// have a value, those too around which no probe is active.
+TEST_F(ProbeLookupTest, InactiveProbesAreNotRead) {
+    const BoxRoom room(8);
+    const RoomFieldSettings settings{.resolution = {.depth = 64, .light = 64, .irradiance = 8, .moments = 14},
+                                     .light = [](glm::vec3, glm::vec3) { return glm::vec3{2.0f}; },
+                                     .albedo = 1.0f};
+    ProbeField field = makeRoomField(room, settings);
+    for (std::size_t i = 0; i < field.probes.size(); ++i) {
+        if (field.info.grid.placeOf(static_cast<std::uint32_t>(i)).x == 0) continue;
+        field.probes[i] = {};
+        field.probes[i].record.state = ProbeState::Inactive;
+    }
+    addProximity(field, room, {8, 4, 8});
+    const std::vector<SurfaceSample> samples = roomSurface(room, 20000, 4);
+    const std::vector<ProbeLookup> found = lookUp(field, samples);
+    std::array<std::size_t, gpu::kProbeTierCount> tiers{};
+    for (const ProbeLookup& lookup : found) {
+        EXPECT_TRUE(hasValue(lookup));
+        EXPECT_NEAR(lookup.indirect.x, 2.0f, 0.2f);
+        ++tiers[static_cast<std::size_t>(lookup.tier)];
+    }
+    EXPECT_GT(tiers[static_cast<std::size_t>(ProbeTier::Texels)], 0u);
+    EXPECT_GT(tiers[static_cast<std::size_t>(ProbeTier::Nearest)], 0u);
+}
+
+TEST_F(ProbeLookupTest, WithoutAnyActiveProbeItSaysSo) {
+    const BoxRoom room(0);
+    ProbeField field = makeRoomField(room, {.resolution = {.irradiance = 8, .moments = 14}, .counts = {2, 1, 1}});
+    for (ProbeData& probe : field.probes) {
+        probe = {};
+        probe.record.state = ProbeState::Inactive;
+    }
+    for (const ProbeLookup& lookup : lookUp(field, roomSurface(room, 100, 4))) {
+        EXPECT_EQ(lookup.tier, ProbeTier::None);
+        EXPECT_EQ(lookup.indirect, glm::vec3{0.0f});
+    }
+}
+
+/// The compact layer once more, from the functions that tell what a stored map means.
+glm::vec3 compactTwin(const ProbeField& field, const SurfaceSample& point, double voxelMetres) {
+    const ProbeGrid& grid = field.info.grid;
+    const double bias = std::min(2.0 * voxelMetres, 0.2 * std::min({grid.step.x, grid.step.y, grid.step.z}));
+    const glm::dvec3 biased = glm::dvec3{point.position} + bias * glm::dvec3{point.normal};
+    const glm::dvec3 at = (biased - glm::dvec3{grid.start}) / glm::dvec3{grid.step};
+    glm::dvec3 sum(0.0);
+    double weights = 0.0;
+    for (int corner = 0; corner < 8; ++corner) {
+        glm::uvec3 place{0};
+        double weight = 1.0;
+        for (int axis = 0; axis < 3; ++axis) {
+            const double low = std::clamp(std::floor(at[axis]), 0.0, std::max(grid.counts[axis] - 2.0, 0.0));
+            const double fraction = std::clamp(at[axis] - low, 0.0, 1.0);
+            const int upper = corner >> axis & 1;
+            place[axis] = static_cast<std::uint32_t>(low) + static_cast<std::uint32_t>(upper);
+            weight *= std::max(upper != 0 ? fraction : 1.0 - fraction, 0.001);
+        }
+        const std::uint32_t index = grid.indexOf(place);
+        const ProbeData& probe = field.probes[index];
+        if (!probe.record.isActive()) continue;
+        const glm::dvec3 eye = glm::dvec3{grid.pointOf(index) + probe.record.offset};
+        const double facing = 0.5 * glm::dot(glm::normalize(eye - glm::dvec3{point.position}), glm::dvec3{point.normal}) + 0.5;
+        const glm::dvec2 moments{lookupMoments(probe.moments, field.info.resolution.moments,
+                                               glm::normalize(glm::vec3{biased - eye}))};
+        const double d = std::min(glm::length(biased - eye) / static_cast<double>(grid.momentRange()), 1.0);
+        double visible = 1.0;
+        if (d > moments.x) {
+            const double variance = std::max(moments.y - moments.x * moments.x, 1e-6);
+            visible = std::pow(variance / (variance + (d - moments.x) * (d - moments.x)), 3);
+        }
+        double own = (facing * facing + 0.05) * visible;
+        if (own < 0.2) own = own * own * own / 0.04;
+        weight *= std::max(own, 1e-4);
+        weights += weight;
+        sum += weight * glm::dvec3{lookupIrradiance(probe.irradiance, field.info.resolution.irradiance, point.normal)};
+    }
+    return glm::vec3{sum / weights};
+}
+
+TEST_F(ProbeLookupTest, CompactLayerIsWhatItsTwinComputes) {
+    const BoxRoom room(24);
+    const ProbeField field =
+        makeRoomField(room, {.resolution = {.irradiance = 8, .moments = 14}, .counts = {5, 3, 4}, .albedo = 0.7f});
+    const std::vector<SurfaceSample> samples = roomSurface(room, 5000, 9);
+    const std::vector<ProbeLookup> found = lookUp(field, samples);
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        ASSERT_EQ(found[i].tier, ProbeTier::Compact);
+        const glm::vec3 twin = compactTwin(field, samples[i], 0.1);
+        EXPECT_LE(glm::length(found[i].indirect - twin), 2e-3f * glm::length(twin)) << i;
+    }
+}
+
+/// Two rooms with a wall between them, light in one of them only.
+class TwoRooms : public ProbeLookupTest {
+  protected:
+    struct Result {
+        double lit = 0.0;
+        double dark = 0.0;
+    };
+    static Result meansOf(float wallMetres, ProbeResolution resolution) {
+        BoxRoom room(0);
+        room.add({{5.0f - 0.5f * wallMetres, -0.1f, -0.1f}, {5.0f + 0.5f * wallMetres, 4.1f, 10.1f}});
+        const LightAt light = [](glm::vec3 p, glm::vec3) { return glm::vec3{p.x < 5.0f ? 1.0f : 0.0f}; };
+        ProbeField field = makeRoomField(room, {.resolution = resolution, .counts = {6, 3, 6}, .light = light, .albedo = 1.0f});
+        if (resolution.depth != 0) addProximity(field, room, {20, 8, 20});
+        const std::vector<SurfaceSample> samples = roomSurface(room, 20000, 6);
+        const std::vector<ProbeLookup> found = lookUp(field, samples);
+        Result result;
+        std::array<double, 2> counts{};
+        for (std::size_t i = 0; i < samples.size(); ++i) {
+            const bool lit = samples[i].position.x < 5.0f;
+            counts[lit ? 0 : 1] += 1.0;
+            (lit ? result.lit : result.dark) += static_cast<double>(found[i].indirect.x);
+            EXPECT_TRUE(hasValue(found[i]));
+        }
+        result.lit /= counts[0];
+        result.dark /= counts[1];
+        RecordProperty("leak_percent", std::to_string(100 * result.dark / result.lit));
+        return result;
+    }
+};
+
+TEST_F(TwoRooms, NothingLeaksThroughAWallOfFourVoxels) {
+    const Result result = meansOf(0.4f, kSmall);
+    EXPECT_GT(result.lit, 0.9);
+    EXPECT_LE(result.dark, 0.01 * result.lit);
+}
+
+TEST_F(TwoRooms, LittleLeaksThroughAWallOfOneVoxel) {
+    const Result result = meansOf(0.1f, kSmall);
+    EXPECT_LE(result.dark, 0.02 * result.lit);
+}
+
+TEST_F(TwoRooms, CompactLeaksThroughAWallOfFourVoxels) {
+    const Result result = meansOf(0.4f, {.irradiance = 8, .moments = 14});
+    EXPECT_LE(result.dark, 0.05 * result.lit);
+}
+
+/// A shard has no neighbours to blend with.
+TEST_F(ProbeLookupTest, ShardsAreRefused) {
+    const BoxRoom room(0);
+    ProbeField field = makeRoomField(room, {.resolution = {.irradiance = 8, .moments = 14}, .counts = {2, 1, 1}});
+    field.info.range.end = 1;
+    field.probes.resize(1);
+    const auto probes = uploadField(device(), field, {});
+    ASSERT_FALSE(probes);
+    EXPECT_EQ(probes.error().code, ErrorCode::BadStructure);
+    EXPECT_NE(probes.error().message.find("probe-bake merge"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace pfvox::test

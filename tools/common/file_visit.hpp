@@ -1,0 +1,32 @@
+// File visit: commands that only read do the same with each of the files that they are asked about.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <pfvox/error.hpp>
+#include <pfvox/limits.hpp>
+#include <string>
+#include <vector>
+
+#include "common/command_line.hpp"
+#include "common/reporter.hpp"
+
+namespace pfvox::tools {
+
+struct ReadOptions {
+    CommonOptions common;
+    std::vector<std::string> inputs;
+};
+
+void addReadOptions(CLI::App& command, ReadOptions& options);
+
+/// What happens with one file: returns the code of its failure, or nothing when all is well.
+using FileVisitor =
+    std::function<std::optional<ErrorCode>(const std::filesystem::path&, const Limits&, Reporter&)>;
+
+/// Visits every file that the inputs name, one after the other, each with `-j` threads. Of folders those with
+/// this extension.
+ExitCode visitFiles(const CLI::App& command, const ReadOptions& options, const std::string& extension,
+                    const FileVisitor& visit);
+
+}  // namespace pfvox::tools

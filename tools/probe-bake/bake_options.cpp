@@ -1,0 +1,173 @@
+#include "probe-bake/bake_options.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <charconv>
+#include <vector>
+
+namespace pfvox::tools {
+
+namespace {
+
+constexpr double kMaxSampleCount = 65536;
+constexpr double kMaxBounceCount = 16;
+constexpr std::uint32_t kSampleBatch = 16;
+constexpr const char* kBaking = "Baking";
+
+std::optional<std::uint64_t> parseCount(std::string_view text) {
+    std::uint64_t value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+    return value;
+}
+
+/// The numbers between separators; nothing when one is no number.
+std::optional<std::vector<std::uint64_t>> parseCounts(std::string_view text, char separator) {
+    std::vector<std::uint64_t> values;
+    for (;;) {
+        const std::size_t end = text.find(separator);
+        const auto value = parseCount(text.substr(0, end));
+        if (!value) return std::nullopt;
+        values.push_back(*value);
+        if (end == std::string_view::npos) return values;
+        text.remove_prefix(end + 1);
+    }
+}
+
+void addLightOptions(CLI::App& command, BakeOptions& options) {
+    auto* profile = command
+                        .add_option("--profile", options.profile,
+                                    "maps of a probe: thesis, default or compact (default: default)")
+                        ->option_text("NAME")
+                        ->check(CLI::IsMember({"thesis", "default", "compact"}))
+                        ->group(kBaking);
+    command
+        .add_option("--resolution", options.resolution,
+                    "own edges of the maps instead: depth,light,irradiance,moments in texels, 0 = none")
+        ->option_text("D,L,I,M")
+        ->excludes(profile)
+        ->group(kBaking);
+    auto* samples = command
+                        .add_option("--samples", options.samples,
+                                    "as many paths for every texel, a multiple of 16 up to 65536")
+                        ->option_text("N")
+                        ->check(numberFrom(kSampleBatch, kMaxSampleCount))
+                        ->group(kBaking);
+    command
+        .add_option("--noise", options.noise,
+                    "relative standard error at which a tile of texels is done, 0.0001 to 1 (default 0.02)")
+        ->option_text("SHARE")
+        ->excludes(samples)
+        ->check(numberFrom(1e-4, 1))
+        ->group(kBaking);
+    command.add_option("--max-samples", options.maxSamples, "paths a texel at most, 32 to 65536 (default 4096)")
+        ->option_text("N")
+        ->excludes(samples)
+        ->check(numberFrom(32, kMaxSampleCount))
+        ->group(kBaking);
+    command.add_option("--bounces", options.bounces, "reflections of a path, 0 to 16 (default: until it has no weight)")
+        ->option_text("N")
+        ->check(numberFrom(0, kMaxBounceCount))
+        ->group(kBaking);
+    command.add_option("--seed", options.seed, "of the random numbers (default 0)")->option_text("N")->group(kBaking);
+    command
+        .add_flag("--relocate,!--no-relocate", options.relocate,
+                  "move probes out of solids (default); else they are inactive")
+        ->group(kBaking);
+}
+
+void addRunOptions(CLI::App& command, BakeOptions& options) {
+    addDeviceOption(command, options.device);
+    command.add_flag("--list-devices", options.listDevices, "print the devices and do nothing")->group(kBaking);
+    command.add_option("--probes", options.probes, "bake probes A to B - 1 only: a shard for `probe-bake merge`")
+        ->option_text("A:B")
+        ->group(kBaking);
+    command.add_flag("--resume", options.resume, "take finished probes of a stopped bake from the journal")
+        ->group(kBaking);
+    command.add_option("--depfile", options.depfile, "write what the output was made from, for make and ninja")
+        ->option_text("FILE")
+        ->group(group::kBuild);
+    command.add_flag("--if-changed", options.ifChanged, "keep the time stamp of an output that stays the same (ninja)")
+        ->group(group::kBuild);
+    command.add_flag("--warnings-as-errors", options.warningsAsErrors, "a scene with warnings fails, nothing is baked")
+        ->group(group::kBuild);
+}
+
+}  // namespace
+
+void addDeviceOption(CLI::App& command, std::string& device) {
+    command.add_option("--device", device, "number or part of the name (default: the first real GPU)")
+        ->option_text("DEVICE")
+        ->group(kBaking);
+}
+
+void addBakeOptions(CLI::App& command, BakeOptions& options) {
+    command.add_option("input", options.input)->group(group::kInputOutput);
+    command.add_option("-o,--output", options.output, "the probe file (.pf_probe); required")
+        ->option_text("FILE")
+        ->group(group::kInputOutput);
+    command.add_flag("--force", options.force, "bake what is up to date, too")->group(group::kInputOutput);
+    command.add_flag("--explain", options.explain, "say why it is baked or not")->group(group::kInputOutput);
+    addLightOptions(command, options);
+    addRunOptions(command, options);
+    addCommonOptions(command, options.common);
+}
+
+tl::expected<ProbeRange, std::string> parseProbeRange(const std::string& text, std::uint64_t probeCount) {
+    const auto ends = parseCounts(text, ':');
+    if (!ends || ends->size() != 2)
+        return tl::make_unexpected(fmt::format("--probes {}: not two numbers with a colon between them", text));
+    if (ends->at(0) >= ends->at(1) || ends->at(1) > probeCount)
+        return tl::make_unexpected(
+            fmt::format("--probes {}: not a range of the {} probes, which are 0:{}", text, probeCount, probeCount));
+    return ProbeRange{static_cast<std::uint32_t>(ends->at(0)), static_cast<std::uint32_t>(ends->at(1))};
+}
+
+tl::expected<ProbeResolution, std::string> parseResolution(const std::string& text) {
+    const auto edges = parseCounts(text, ',');
+    if (!edges || edges->size() != 4)
+        return tl::make_unexpected(fmt::format("--resolution {}: not four numbers with commas between them", text));
+    std::array<std::uint32_t, 4> checked{};
+    for (std::size_t i = 0; i < checked.size(); ++i) {
+        if (edges->at(i) > kMaxProbeEdge)
+            return tl::make_unexpected(fmt::format("--resolution {}: edges are 0 to {}", text, kMaxProbeEdge));
+        checked[i] = static_cast<std::uint32_t>(edges->at(i));
+    }
+    if (checked[0] % 16 != 0)
+        return tl::make_unexpected(fmt::format("--resolution {}: the first edge must be a multiple of 16", text));
+    return ProbeResolution{.depth = checked[0], .light = checked[1], .irradiance = checked[2], .moments = checked[3]};
+}
+
+tl::expected<BakeSettings, std::string> settingsOf(const BakeOptions& options, std::uint64_t probeCount) {
+    BakeSettings settings;
+    if (!options.resolution.empty()) {
+        const auto resolution = parseResolution(options.resolution);
+        if (!resolution) return tl::make_unexpected(resolution.error());
+        settings.resolution = *resolution;
+    } else {
+        settings.resolution = resolutionOf(options.profile == "thesis"    ? ProbeProfile::Thesis
+                                           : options.profile == "compact" ? ProbeProfile::Compact
+                                                                          : ProbeProfile::Default);
+    }
+    if (!options.probes.empty()) {
+        const auto range = parseProbeRange(options.probes, probeCount);
+        if (!range) return tl::make_unexpected(range.error());
+        settings.range = *range;
+    }
+    settings.maxSamples = options.samples.value_or(options.maxSamples);
+    settings.minSamples = options.samples.value_or(settings.minSamples);
+    if (settings.maxSamples % kSampleBatch != 0)
+        return tl::make_unexpected(fmt::format("{} samples: must be a multiple of {}", settings.maxSamples, kSampleBatch));
+    if (options.samples) settings.noiseTarget = 0.0f;
+    if (options.noise) settings.noiseTarget = static_cast<float>(*options.noise);
+    settings.maxBounces = options.bounces;
+    settings.seed = options.seed;
+    settings.relocate = options.relocate;
+    settings.resume = options.resume;
+    settings.force = options.force;
+    settings.toolName = "probe-bake " PFVOX_VERSION;
+    return settings;
+}
+
+}  // namespace pfvox::tools

@@ -1,0 +1,50 @@
+// Bake options: the command line of probe-bake bake, and the settings that it stands for.
+#pragma once
+
+#include <optional>
+#include <pfvox/bake.hpp>
+#include <string>
+#include <tl/expected.hpp>
+
+#include "common/command_line.hpp"
+
+namespace pfvox::tools {
+
+struct BakeOptions {
+    CommonOptions common;
+    std::string input;
+    std::string output;
+    std::string profile = "default";
+    std::string resolution;
+    std::optional<std::uint32_t> samples;
+    std::optional<double> noise;
+    std::uint32_t maxSamples = 4096;
+    std::optional<std::uint32_t> bounces;
+    std::uint64_t seed = 0;
+    std::string probes;
+    std::string device;
+    std::string depfile;
+    bool listDevices = false;
+    bool resume = false;
+    bool relocate = true;
+    bool force = false;
+    bool explain = false;
+    bool ifChanged = false;
+    bool warningsAsErrors = false;
+};
+
+void addBakeOptions(CLI::App& command, BakeOptions& options);
+
+/// `--device`, as bake and verify have it.
+void addDeviceOption(CLI::App& command, std::string& device);
+
+/// Settings of a bake over so many probes. On failure: what is wrong with which option.
+tl::expected<BakeSettings, std::string> settingsOf(const BakeOptions& options, std::uint64_t probeCount);
+
+/// "a:b", half open, within [0, probeCount].
+tl::expected<ProbeRange, std::string> parseProbeRange(const std::string& text, std::uint64_t probeCount);
+
+/// "depth,light,irradiance,moments" in texels, 0 = none.
+tl::expected<ProbeResolution, std::string> parseResolution(const std::string& text);
+
+}  // namespace pfvox::tools

@@ -1,0 +1,122 @@
+#include "probe-bake/bake_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "common/text.hpp"
+
+namespace pfvox::tools {
+
+namespace {
+
+double raysPerSecond(const BakePass& pass) {
+    return pass.gpuMs > 0.0 ? static_cast<double>(pass.rays) / (pass.gpuMs * 1e-3) : 0.0;
+}
+
+Json passJson(const BakePass& pass) { return {{"rays", pass.rays}, {"gpuMs", pass.gpuMs}}; }
+
+const char* statusOf(const BakeOutcome& outcome) {
+    if (!outcome.error) return outcome.report.upToDate ? "up-to-date" : "baked";
+    return outcome.error->code == ErrorCode::Cancelled ? "interrupted" : "failed";
+}
+
+std::string proximityLine(const ProximityReport& proximity) {
+    if (proximity.surfaceCells == 0) return {};
+    return fmt::format("  proximity grid: {} with surface, {} of them seen by no probe; {:.2f} % of the samples seen\n",
+                       plural(proximity.surfaceCells, "cell"), formatCount(proximity.uncoveredCells),
+                       100.0 * static_cast<double>(proximity.seenSamples) /
+                           static_cast<double>(std::max<std::uint64_t>(proximity.samples, 1)));
+}
+
+}  // namespace
+
+std::string progressLine(const std::string& output, const BakeProgress& progress) {
+    std::string line = fmt::format("{}: probe {} of {}", output, formatCount(progress.probesDone),
+                                   formatCount(progress.probes));
+    if (progress.probesReused != 0) line += fmt::format(" ({} from the journal)", formatCount(progress.probesReused));
+    if (progress.elapsedSeconds > 0.0)
+        line += fmt::format(", {} rays/s", formatRoughly(static_cast<double>(progress.rays) / progress.elapsedSeconds));
+    if (progress.secondsLeft) line += fmt::format(", {} left", formatDuration(*progress.secondsLeft));
+    return line;
+}
+
+std::string bakeText(const BakeOutcome& outcome, bool explain) {
+    const BakeReport& report = outcome.report;
+    const std::string why = explain ? ": " + outcome.reason : "";
+    if (report.upToDate) return fmt::format("{} is up to date{}\n", outcome.output, why);
+    std::string text = fmt::format("baked {} -> {}: {}, {} in {}{}\n", outcome.input, outcome.output,
+                                   plural(report.probes, "probe"), formatBytes(report.fileBytes),
+                                   formatDuration(report.totalMs * 1e-3), why);
+    text += fmt::format("  {} active, {} of them relocated; {} inactive; {} from the journal\n",
+                        formatCount(report.active), formatCount(report.relocated), formatCount(report.inactive),
+                        formatCount(report.reused));
+    text += fmt::format("  {} rays for geometry at {} rays/s, {} for light at {} rays/s on {}\n",
+                        formatRoughly(static_cast<double>(report.geometry.rays)),
+                        formatRoughly(raysPerSecond(report.geometry)),
+                        formatRoughly(static_cast<double>(report.light.rays)), formatRoughly(raysPerSecond(report.light)),
+                        outcome.device);
+    text += fmt::format("  {:.1f} paths a texel, noise {:.2f} % (worst probe {:.2f} %), {:.2f} % of the tiles stopped at "
+                        "the largest number\n",
+                        report.meanSamples, 100.0 * report.meanError, 100.0 * report.maxError,
+                        100.0 * report.cappedTileShare);
+    return text + proximityLine(report.proximity);
+}
+
+Json bakeJson(const BakeOutcome& outcome) {
+    const BakeReport& report = outcome.report;
+    Json json;
+    json["input"] = outcome.input;
+    json["output"] = outcome.output;
+    json["status"] = statusOf(outcome);
+    json["reason"] = outcome.reason;
+    json["device"] = outcome.device;
+    json["probes"] = report.probes;
+    json["reused"] = report.reused;
+    json["active"] = report.active;
+    json["relocated"] = report.relocated;
+    json["inactive"] = report.inactive;
+    json["geometry"] = passJson(report.geometry);
+    json["light"] = passJson(report.light);
+    json["smallLayersMs"] = report.smallLayersMs;
+    json["proximityMs"] = report.proximityMs;
+    json["writeMs"] = report.writeMs;
+    json["totalMs"] = report.totalMs;
+    json["emitterFaces"] = report.emitterFaces;
+    json["cappedRays"] = report.cappedRays;
+    json["meanError"] = report.meanError;
+    json["maxError"] = report.maxError;
+    json["cappedTileShare"] = report.cappedTileShare;
+    json["meanSamples"] = report.meanSamples;
+    json["surfaceCells"] = report.proximity.surfaceCells;
+    json["uncoveredCells"] = report.proximity.uncoveredCells;
+    json["fileBytes"] = report.fileBytes;
+    json["diagnostics"] = toJson(outcome.diagnostics);
+    json["error"] = outcome.error ? toJson(*outcome.error) : Json(nullptr);
+    return json;
+}
+
+std::string deviceLines(std::span<const gpu::DeviceInfo> devices) {
+    std::string text;
+    for (const gpu::DeviceInfo& device : devices) {
+        text += fmt::format("{}  {} ({}, {}), {}{}\n", device.index, device.name, toString(device.kind),
+                            formatBytes(device.localMemoryBytes), device.driver,
+                            device.usable() ? "" : "; not usable: " + device.missing);
+    }
+    return text;
+}
+
+Json devicesJson(std::span<const gpu::DeviceInfo> devices) {
+    Json list = Json::array();
+    for (const gpu::DeviceInfo& device : devices)
+        list.push_back({{"index", device.index},
+                        {"name", device.name},
+                        {"kind", toString(device.kind)},
+                        {"driver", device.driver},
+                        {"localMemoryBytes", device.localMemoryBytes},
+                        {"usable", device.usable()},
+                        {"missing", device.missing}});
+    return {{"devices", list}};
+}
+
+}  // namespace pfvox::tools

@@ -1,0 +1,262 @@
+#include "probe-bake/info_report.hpp"
+
+#include <fmt/format.h>
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+
+#include "common/table.hpp"
+#include "common/text.hpp"
+
+namespace pfvox::tools {
+
+namespace {
+
+constexpr std::size_t kFewRows = 12;
+constexpr std::size_t kIndent = 2;
+constexpr std::array kLayers{ProbeLayer::DepthNormal, ProbeLayer::Light, ProbeLayer::MinDepth, ProbeLayer::Irradiance,
+                             ProbeLayer::Moments};
+
+template <class Vector>
+Json vectorJson(const Vector& v) {
+    return {v.x, v.y, v.z};
+}
+
+template <class T>
+Json orNull(const std::optional<T>& value) {
+    return value ? Json(*value) : Json(nullptr);
+}
+
+std::string orDash(const std::optional<double>& value) {
+    return value ? fmt::format("{:.3f}", *value) : "-";
+}
+
+std::vector<LayerSize> layerSizes(const ProbeFileReader& reader) {
+    std::vector<LayerSize> sizes;
+    const ProbeFieldInfo& field = reader.info();
+    for (const ProbeLayer layer : kLayers) {
+        if (!field.resolution.has(layer)) continue;
+        LayerSize size{.layer = layer};
+        for (std::uint32_t probe = field.range.first; probe < field.range.end; ++probe) {
+            if (!reader.has(probe, layer)) continue;
+            size.storedBytes += reader.frame(probe, layer).storedBytes;
+            size.rawBytes += field.resolution.bytesOf(layer);
+        }
+        sizes.push_back(size);
+    }
+    return sizes;
+}
+
+/// The first error of several threads is kept.
+Result<std::vector<ProbeStatistics>> allStatistics(const ProbeFileReader& reader) {
+    const ProbeRange range = reader.info().range;
+    std::vector<ProbeStatistics> statistics(range.size());
+    std::vector<std::optional<Error>> errors(range.size());
+    tbb::parallel_for(0u, range.size(), [&](std::uint32_t i) {
+        const auto data = reader.readProbe(range.first + i);
+        if (data) {
+            statistics[i] = statisticsOf(reader.info(), *data);
+        } else {
+            errors[i] = data.error();
+        }
+    });
+    for (std::optional<Error>& error : errors) {
+        if (error) return tl::make_unexpected(*std::move(error));
+    }
+    return statistics;
+}
+
+Json resolutionJson(const ProbeResolution& resolution) {
+    return {{"profile", toString(profileOf(resolution))},
+            {"depth", resolution.depth},
+            {"light", resolution.light},
+            {"irradiance", resolution.irradiance},
+            {"moments", resolution.moments},
+            {"bytesPerProbe", resolution.bytesPerProbe()}};
+}
+
+Json lightContentJson(std::uint32_t content) {
+    constexpr std::array<std::pair<std::uint32_t, const char*>, 5> kNames{{{kLightOfSky, "sky"},
+                                                                           {kLightOfEmitters, "emitters"},
+                                                                           {kLightOfBouncedSun, "bounced-sun"},
+                                                                           {kLightOfDirectSun, "direct-sun"},
+                                                                           {kLightOfSpecular, "specular"}}};
+    Json names = Json::array();
+    for (const auto& [bit, name] : kNames) {
+        if ((content & bit) != 0) names.push_back(name);
+    }
+    return names;
+}
+
+Json settingsJson(const ProbeBakeSettings& settings) {
+    return {{"seed", settings.seed},
+            {"tracedEdge", settings.tracedEdge},
+            {"minSamples", settings.minSamples},
+            {"maxSamples", settings.maxSamples},
+            {"maxBounces", settings.maxBounces},
+            {"noiseTarget", settings.noiseTarget}};
+}
+
+Json probeJson(const ProbeFileInfo& info, std::size_t i) {
+    const ProbeStatistics& counted = info.probes[i];
+    const ProbeRecord& record = info.records[i];
+    Json json;
+    json["index"] = info.field.range.first + i;
+    json["position"] = vectorJson(info.positions[i]);
+    json["state"] = toString(record.state);
+    json["missShare"] = orNull(counted.missShare);
+    json["meanIndirect"] = counted.meanIndirect ? vectorJson(*counted.meanIndirect) : Json(nullptr);
+    json["maxIndirect"] = orNull(counted.maxIndirect);
+    json["minDepth"] = orNull(counted.minDepthMetres);
+    json["meanDepth"] = orNull(counted.meanDepthMetres);
+    json["error"] = record.error;
+    json["cappedTileShare"] = record.cappedTileShare;
+    json["hash"] = fmt::format("{:016x}", record.hash);
+    return json;
+}
+
+std::array<std::size_t, 3> statesOf(const ProbeFileInfo& info) {
+    std::array<std::size_t, 3> counts{};
+    for (const ProbeRecord& record : info.records) ++counts[static_cast<std::size_t>(record.state)];
+    return counts;
+}
+
+std::string probeTable(const ProbeFileInfo& info, std::size_t maxRows) {
+    Table table({{"#", Align::Right},
+                 {"position, m"},
+                 {"state"},
+                 {"miss", Align::Right},
+                 {"mean indirect"},
+                 {"max", Align::Right},
+                 {"min depth, m", Align::Right},
+                 {"mean", Align::Right},
+                 {"error", Align::Right}});
+    const std::size_t shown = std::min(info.probes.size(), maxRows);
+    for (std::size_t i = 0; i < shown; ++i) {
+        const ProbeStatistics& counted = info.probes[i];
+        const glm::vec3 at = info.positions[i];
+        const auto& mean = counted.meanIndirect;
+        table.addRow({std::to_string(info.field.range.first + i), fmt::format("{:.2f} {:.2f} {:.2f}", at.x, at.y, at.z),
+                      std::string(toString(info.records[i].state)),
+                      counted.missShare ? fmt::format("{:.1f} %", 100.0 * *counted.missShare) : "-",
+                      mean ? fmt::format("{:.3f} {:.3f} {:.3f}", mean->x, mean->y, mean->z) : "-",
+                      orDash(counted.maxIndirect), orDash(counted.minDepthMetres), orDash(counted.meanDepthMetres),
+                      fmt::format("{:.1f} %", 100.0 * static_cast<double>(info.records[i].error))});
+    }
+    std::string text = table.render(kIndent);
+    if (shown < info.probes.size())
+        text += fmt::format("{:{}}... and {} more; -v shows all\n", "", kIndent, formatCount(info.probes.size() - shown));
+    return text;
+}
+
+std::string layerTable(const ProbeFileInfo& info) {
+    Table table({{"layer"},
+                 {"edge", Align::Right},
+                 {"stored", Align::Right},
+                 {"raw", Align::Right},
+                 {"of file", Align::Right}});
+    for (const LayerSize& size : info.layers) {
+        table.addRow({std::string(toString(size.layer)), std::to_string(info.field.resolution.edgeOf(size.layer)),
+                      formatBytes(size.storedBytes), formatBytes(size.rawBytes),
+                      fmt::format("{:.1f} %", 100.0 * static_cast<double>(size.storedBytes) /
+                                                  static_cast<double>(info.fileBytes))});
+    }
+    return table.render(kIndent);
+}
+
+std::string headline(const ProbeFileInfo& info) {
+    const ProbeFieldInfo& field = info.field;
+    const ProbeGrid& grid = field.grid;
+    const ProbeBakeSettings& settings = field.settings;
+    std::string text = fmt::format("PF_PROBE {}.{}, {}, profile {}, content key {}\n", kPfProbeVersionMajor,
+                                   kPfProbeVersionMinor, formatBytes(info.fileBytes),
+                                   toString(profileOf(field.resolution)), info.contentKey.hex());
+    text += fmt::format("  grid {} x {} x {} from {:.2f} {:.2f} {:.2f} m, step {:.2f} {:.2f} {:.2f} m\n", grid.counts.x,
+                        grid.counts.y, grid.counts.z, grid.start.x, grid.start.y, grid.start.z, grid.step.x,
+                        grid.step.y, grid.step.z);
+    if (!field.isWhole()) text += fmt::format("  a shard: probes {} to {}\n", field.range.first, field.range.end - 1);
+    text += fmt::format("  {} to {} paths a texel, {}, seed {}, by {} on {}\n", settings.minSamples, settings.maxSamples,
+                        settings.maxBounces == 0 ? "no bounce limit" : plural(settings.maxBounces, "bounce"),
+                        settings.seed, field.toolName, field.deviceName);
+    if (info.proximityCounts)
+        text += fmt::format("  proximity grid {} x {} x {}, {} with probes\n", info.proximityCounts->x,
+                            info.proximityCounts->y, info.proximityCounts->z, plural(info.coveredCells, "cell"));
+    return text;
+}
+
+}  // namespace
+
+Result<ProbeFileInfo> readProbeFileInfo(const std::filesystem::path& file, const Limits& limits,
+                                        Diagnostics& diagnostics) {
+    PFVOX_TRY(const ProbeFileReader, reader, ProbeFileReader::open(file, limits, diagnostics));
+    ProbeFileInfo info{.file = file,
+                       .field = reader.info(),
+                       .contentKey = reader.contentKey(),
+                       .fileBytes = reader.fileBytes(),
+                       .proximityCounts = {},
+                       .layers = layerSizes(reader),
+                       .records = {},
+                       .positions = {},
+                       .probes = {}};
+    if (const auto& proximity = reader.proximity()) {
+        info.proximityCounts = proximity->counts;
+        for (std::size_t i = 0; i < proximity->probes.size(); i += kProbesPerCell)
+            info.coveredCells += proximity->probes[i] != kNoProbe ? 1u : 0u;
+    }
+    for (std::uint32_t probe = info.field.range.first; probe < info.field.range.end; ++probe) {
+        info.records.push_back(reader.record(probe));
+        info.positions.push_back(reader.positionOf(probe));
+    }
+    PFVOX_TRY(std::vector<ProbeStatistics>, statistics, allStatistics(reader));
+    info.probes = std::move(statistics);
+    return info;
+}
+
+std::string infoText(const ProbeFileInfo& info, const Reporter& reporter, bool complete) {
+    const auto title = [&](std::string_view word, std::size_t count) {
+        return "\n" + reporter.styled(Reporter::Style::Strong, fmt::format("{} ({})", word, formatCount(count))) + "\n";
+    };
+    const auto states = statesOf(info);
+    std::string text = reporter.styled(Reporter::Style::Strong, info.file.string()) + "\n" + headline(info);
+    text += title("Probes", info.probes.size()) + probeTable(info, complete ? info.probes.size() : kFewRows);
+    text += fmt::format("  {} active, {} relocated, {} inactive\n", states[0], states[2], states[1]);
+    return text + title("Layers", info.layers.size()) + layerTable(info);
+}
+
+Json infoJson(const ProbeFileInfo& info) {
+    const ProbeFieldInfo& field = info.field;
+    const auto states = statesOf(info);
+    Json json;
+    json["file"] = info.file.string();
+    json["formatVersion"] = fmt::format("{}.{}", kPfProbeVersionMajor, kPfProbeVersionMinor);
+    json["fileBytes"] = info.fileBytes;
+    json["contentKey"] = info.contentKey.hex();
+    json["grid"] = {{"start", vectorJson(field.grid.start)},
+                    {"step", vectorJson(field.grid.step)},
+                    {"counts", vectorJson(field.grid.counts)}};
+    json["range"] = {{"first", field.range.first}, {"end", field.range.end}};
+    json["resolution"] = resolutionJson(field.resolution);
+    json["depthEncoding"] = {{"scale", field.depth.scale}, {"farMetres", field.depth.farMetres}};
+    json["lightContent"] = lightContentJson(field.lightContent);
+    json["settings"] = settingsJson(field.settings);
+    json["sceneHash"] = field.sceneHash.hex();
+    json["shaderHash"] = field.shaderHash.hex();
+    json["device"] = field.deviceName;
+    json["tool"] = field.toolName;
+    json["proximity"] = Json(nullptr);
+    if (info.proximityCounts)
+        json["proximity"] = {{"counts", vectorJson(*info.proximityCounts)}, {"coveredCells", info.coveredCells}};
+    json["states"] = {{"active", states[0]}, {"inactive", states[1]}, {"relocated", states[2]}};
+    json["layers"] = Json::array();
+    for (const LayerSize& size : info.layers)
+        json["layers"].push_back({{"name", toString(size.layer)},
+                                  {"edge", field.resolution.edgeOf(size.layer)},
+                                  {"storedBytes", size.storedBytes},
+                                  {"rawBytes", size.rawBytes}});
+    json["probes"] = Json::array();
+    for (std::size_t i = 0; i < info.probes.size(); ++i) json["probes"].push_back(probeJson(info, i));
+    return json;
+}
+
+}  // namespace pfvox::tools

@@ -1,0 +1,64 @@
+// probe-bake: bakes the light of a scene into PF_PROBE files, and tells what is in such files.
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cstdio>
+#include <exception>
+#include <pfvox/pf_probe.hpp>
+
+#include "common/interrupt.hpp"
+#include "probe-bake/commands.hpp"
+
+namespace pfvox::tools {
+
+namespace {
+
+std::string versionText() {
+    return fmt::format("probe-bake {}\nreads   scene.toml, PF_VOX {}.{}, PF_PROBE {}.{}\nwrites  {} (PF_PROBE {}.{})",
+                       PFVOX_VERSION, kPfVoxVersionMajor, kPfVoxVersionMinor, kPfProbeVersionMajor,
+                       kPfProbeVersionMinor, kPfProbeExtension, kPfProbeVersionMajor, kPfProbeVersionMinor);
+}
+
+HelpText helpText() {
+    return {.summary = "probe-bake bakes the indirect light of a scene into a grid of light-field probes, and inspects "
+                       "such files.",
+            .usage = {"probe-bake [bake] [options] <scene.toml | file.pf_vox> -o <file.pf_probe>",
+                      "probe-bake info [options] <file.pf_probe>...", "probe-bake validate [options] <file.pf_probe>...",
+                      "probe-bake compare [options] <a.pf_probe> <b.pf_probe>",
+                      "probe-bake merge [options] <shard.pf_probe>... -o <file.pf_probe>",
+                      "probe-bake verify [options] <scene.toml | file.pf_vox> <file.pf_probe>"},
+            .examples = {{"probe-bake scene.toml -o scene.pf_probe", "bake the scene's grid"},
+                         {"probe-bake info hall.pf_probe", "what is in it"}}};
+}
+
+ExitCode run(int argc, char** argv) {
+    exitOnInterrupt([] {
+        std::fputs("\ninterrupted; every output is either finished or as it was\n", stderr);
+    });
+    const auto tool = makeTool("probe-bake", helpText(), versionText());
+    tool->require_subcommand(1);
+    const std::array commands{makeBakeCommand(*tool), makeInfoCommand(*tool), makeValidateCommand(*tool), makeCompareCommand(*tool),
+                              makeMergeCommand(*tool), makeVerifyCommand(*tool)};
+    if (const auto exitCode = parseCommandLine(*tool, withDefaultCommand(*tool, "bake", argc, argv))) {
+        return *exitCode;
+    }
+    for (const Command& command : commands) {
+        if (tool->got_subcommand(command.app)) return command.run();
+    }
+    return ExitCode::Internal;
+}
+
+}  // namespace
+
+}  // namespace pfvox::tools
+
+int main(int argc, char** argv) {
+    using pfvox::tools::ExitCode;
+    try {
+        return static_cast<int>(pfvox::tools::run(argc, argv));
+    } catch (const std::exception& exception) {
+        std::fprintf(stderr, "error: internal error: %s; please report it with the command line\n", exception.what());
+        return static_cast<int>(ExitCode::Internal);
+    }
+}

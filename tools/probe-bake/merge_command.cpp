@@ -1,0 +1,87 @@
+#include <fmt/format.h>
+
+#include <memory>
+#include <pfvox/probe_file.hpp>
+
+#include "common/file_visit.hpp"
+#include "common/inputs.hpp"
+#include "common/interrupt.hpp"
+#include "common/json.hpp"
+#include "common/text.hpp"
+#include "probe-bake/commands.hpp"
+
+namespace pfvox::tools {
+
+namespace {
+
+struct MergeOptions : ReadOptions {
+    std::string output;
+    bool allowPart = false;
+};
+
+HelpText helpText() {
+    return {.summary = "Joins the shards of a bake, in any order, to the file that one bake would have written.",
+            .usage = {"probe-bake merge [options] <shard.pf_probe | folder | @list | ->... -o <file.pf_probe>"},
+            .examples = {{"probe-bake merge a.pf_probe b.pf_probe -o hall.pf_probe", "two shards"},
+                         {"probe-bake merge shards -o hall.pf_probe", "all shards of a folder"}}};
+}
+
+/// The content key that all shards share; none when they differ.
+ContentKey commonKey(const std::vector<std::filesystem::path>& shards, const Limits& limits) {
+    std::optional<ContentKey> common;
+    for (const std::filesystem::path& shard : shards) {
+        DiagnosticList ignored;  // the merge reports them
+        const auto reader = ProbeFileReader::open(shard, limits, ignored);
+        if (!reader || (common && *common != reader->contentKey())) return {};
+        common = reader->contentKey();
+    }
+    return common.value_or(ContentKey{});
+}
+
+ExitCode runMerge(const CLI::App& command, const MergeOptions& options) {
+    Reporter reporter(options.common.reporterSettings());
+    const auto limits = parseLimits(options.common.limits);
+    if (!limits) return usageError(command, limits.error());
+    const auto stopWith = [&](const Error& error) {
+        reporter.error(error);
+        return exitCodeOf(error.code);
+    };
+    const auto wanted = [](const std::filesystem::path& file) { return file.extension() == kPfProbeExtension; };
+    const auto inputs = collectInputs(options.inputs, {.wanted = wanted, .skippedFolder = {}});
+    if (!inputs) return stopWith(inputs.error());
+    std::vector<std::filesystem::path> shards;
+    for (const InputFile& input : *inputs) {
+        if (canonicalName(input.file) == canonicalName(options.output))
+            return usageError(command, options.output + " is both a shard and the output");
+        shards.push_back(input.file);
+    }
+
+    DiagnosticList diagnostics;
+    const WriteGuard guard;
+    const ProbeMergeSettings settings{
+        .contentKey = commonKey(shards, *limits), .proximity = {}, .allowPart = options.allowPart};
+    const auto merged = mergeProbeFields(shards, options.output, settings, *limits, diagnostics);
+    reporter.diagnostics(options.output, diagnostics.entries());
+    if (!merged) return stopWith(merged.error());
+    if (options.common.json)
+        reporter.jsonLine(jsonText(Json{{"output", options.output}, {"shards", shards.size()}}));
+    reporter.result(fmt::format("merged {} into {}\n", plural(shards.size(), "shard"), options.output));
+    return ExitCode::Ok;
+}
+
+}  // namespace
+
+Command makeMergeCommand(CLI::App& tool) {
+    auto options = std::make_shared<MergeOptions>();
+    CLI::App& command = addCommand(tool, "merge", helpText());
+    command.add_option("-o,--output", options->output, "the joined file; required")
+        ->option_text("FILE")
+        ->required()
+        ->group(group::kInputOutput);
+    command.add_flag("--allow-part", options->allowPart, "the shards need not make up the whole grid")
+        ->group(group::kInputOutput);
+    addReadOptions(command, *options);
+    return {.app = &command, .run = [&command, options] { return runMerge(command, *options); }};
+}
+
+}  // namespace pfvox::tools

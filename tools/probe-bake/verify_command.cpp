@@ -1,0 +1,272 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <memory>
+#include <pfvox/verify.hpp>
+
+#include "common/json.hpp"
+#include "common/table.hpp"
+#include "common/text.hpp"
+#include "probe-bake/bake_options.hpp"
+#include "probe-bake/commands.hpp"
+#include "probe-bake/picture_file.hpp"
+
+namespace pfvox::tools {
+
+namespace {
+
+constexpr const char* kVerifying = "Verifying";
+
+struct VerifyOptions {
+    CommonOptions common;
+    std::vector<std::string> inputs;  ///< scene, probe file
+    std::vector<std::string> cameras;
+    std::string size = "320x180";
+    std::uint32_t samples = 256;
+    std::string output;
+    std::string device;
+    bool compact = false;
+    std::optional<double> maxRmsePercent;
+    std::optional<double> maxFlip;
+};
+
+HelpText helpText() {
+    return {.summary = "Renders the indirect light of a scene from its probes and by path tracing, and tells how far both "
+                       "are apart.",
+            .usage = {"probe-bake verify [options] <scene.toml | file.pf_vox> <file.pf_probe>"},
+            .examples = {{"probe-bake verify scene.toml scene.pf_probe", "all cameras of the scene"},
+                         {"probe-bake verify scene.toml scene.pf_probe --camera room --samples 1024 -o pictures",
+                          "one of them, with pictures"},
+                         {"probe-bake verify scene.toml scene.pf_probe --max-rmse 8", "fails when it is worse"}}};
+}
+
+std::optional<glm::uvec2> parseSize(const std::string& text) {
+    unsigned width = 0;
+    unsigned height = 0;
+    char rest = 0;
+    if (std::sscanf(text.c_str(), "%ux%u%c", &width, &height, &rest) != 2) return std::nullopt;
+    if (width < 8 || height < 8 || width > 4096 || height > 4096) return std::nullopt;
+    return glm::uvec2{width, height};
+}
+
+/// A view of the whole from its front, for scenes without cameras.
+Camera outsideCamera(const WorldBounds& bounds) {
+    const glm::dvec3 centre = 0.5 * (bounds.min + bounds.max);
+    const double diagonal = glm::length(bounds.max - bounds.min);
+    return {.name = "outside", .position = centre + diagonal * glm::dvec3{0.5, 0.4, 0.8}, .target = centre};
+}
+
+Result<std::vector<Camera>> chosenCameras(const VerifyOptions& options, const LoadedScene& scene) {
+    std::vector<Camera> cameras = scene.scene.cameras;
+    if (cameras.empty()) cameras.push_back(outsideCamera(scene.bounds));
+    if (options.cameras.empty()) return cameras;
+    std::vector<Camera> chosen;
+    for (const std::string& name : options.cameras) {
+        const auto found = std::ranges::find(cameras, name, &Camera::name);
+        if (found == cameras.end()) {
+            std::string names;
+            for (const Camera& camera : cameras) names += (names.empty() ? "" : ", ") + camera.name;
+            return fail(ErrorCode::BadReference, fmt::format("there is no camera \"{}\"; there are: {}", name, names));
+        }
+        chosen.push_back(*found);
+    }
+    return chosen;
+}
+
+/// Edge of a voxel of the finest model, metres in the world.
+float voxelMetresOf(const LoadedScene& scene) {
+    double smallest = std::numeric_limits<double>::infinity();
+    for (const PlacedAsset& part : scene.parts) {
+        for (int axis = 0; axis < 3; ++axis)
+            smallest = std::min(smallest,
+                                glm::length(part.worldFromAsset[axis]) * part.asset->source.voxelSizeMetres);
+    }
+    return std::isfinite(smallest) && smallest > 0.0 ? static_cast<float>(smallest) : 0.1f;
+}
+
+Json scoreJson(const Camera& camera, const VerifiedPicture& picture, const VerifyScore& score) {
+    Json tiers;
+    for (std::size_t i = 0; i < gpu::kProbeTierCount; ++i)
+        tiers[std::string(toString(static_cast<gpu::ProbeTier>(i)))] = score.tierShares[i];
+    return {{"camera", camera.name},
+            {"width", picture.width},
+            {"height", picture.height},
+            {"surfacePixels", score.surfacePixels},
+            {"withoutValue", score.withoutValue},
+            {"tierShares", tiers},
+            {"meanReference", score.meanReference},
+            {"rmse", score.rmse},
+            {"relativeRmse", score.relativeRmse},
+            {"relativeTexelRmse", score.relativeTexelRmse},
+            {"relativeNoise", score.relativeNoise},
+            {"psnrDecibel", score.psnrDecibel},
+            {"meanFlip", score.meanFlip},
+            {"gpuMs", picture.gpuMs}};
+}
+
+Result<void> writePictures(const std::string& folder, const Camera& camera, const VerifiedPicture& picture,
+                           const VerifyScore& score) {
+    constexpr std::array<glm::vec3, gpu::kProbeTierCount> kTierColours{{{1.0f, 0.0f, 1.0f},
+                                                                        {0.20f, 0.62f, 0.24f},
+                                                                        {0.85f, 0.75f, 0.15f},
+                                                                        {0.16f, 0.36f, 0.78f},
+                                                                        {0.80f, 0.18f, 0.12f}}};
+    std::array<std::vector<glm::vec3>, 4> images;
+    for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
+        const VerifiedPixel& pixel = picture.pixels[i];
+        const auto exposure = static_cast<float>(score.exposure);
+        images[0].push_back(exposure * pixel.lookup);
+        images[1].push_back(exposure * pixel.reference);
+        images[2].push_back(pixel.surface ? heatColour(score.flip[i]) : glm::vec3{0.0f});
+        images[3].push_back(pixel.surface ? kTierColours[static_cast<std::size_t>(pixel.tier)] : glm::vec3{0.0f});
+    }
+    constexpr std::array<const char*, 4> kNames{"probes", "reference", "flip", "tiers"};
+    std::string name = camera.name.empty() ? "camera" : camera.name;
+    std::ranges::replace_if(name, [](unsigned char c) { return std::isalnum(c) == 0 && c != '-' && c != '_'; }, '_');
+    for (std::size_t i = 0; i < images.size(); ++i) {
+        const std::filesystem::path file = std::filesystem::path(folder) / fmt::format("{}-{}.png", name, kNames[i]);
+        PFVOX_CHECK(writePicture(file, {picture.width, picture.height}, images[i]));
+    }
+    return {};
+}
+
+/// One run over all cameras.
+class VerifyRun {
+  public:
+    VerifyRun(const VerifyOptions& options, const Limits& limits, Reporter& reporter, glm::uvec2 size)
+        : options_(options), limits_(limits), reporter_(reporter), size_(size) {}
+
+    Result<void> run() {
+        DiagnosticList diagnostics;
+        auto status = runAll(diagnostics);
+        reporter_.clearProgress();
+        reporter_.diagnostics(options_.inputs[0], diagnostics.entries());
+        return status;
+    }
+    std::string text() const { return table_.render(); }
+    const std::string& complaint() const { return complaint_; }
+    bool withoutValue() const { return withoutValue_; }
+
+  private:
+    Result<void> runAll(DiagnosticList& diagnostics) {
+        PFVOX_TRY(const LoadedScene, loaded, loadScene(options_.inputs[0], limits_, diagnostics));
+        PFVOX_TRY(const std::vector<Camera>, cameras, chosenCameras(options_, loaded));
+        PFVOX_TRY(const ProbeFileReader, reader, ProbeFileReader::open(options_.inputs[1], limits_, diagnostics));
+        PFVOX_TRY(gpu::Device, device, gpu::Device::open({.selector = options_.device}));
+        PFVOX_TRY(const gpu::Scene, scene, gpu::Scene::build(device, gpu::partsOf(loaded), diagnostics));
+        PFVOX_TRY(const gpu::GpuProbes, probes,
+                  gpu::GpuProbes::upload(device, reader,
+                                         {.voxelMetres = voxelMetresOf(loaded), .compactOnly = options_.compact}));
+        PFVOX_TRY(const ProbeVerifier, verifier, ProbeVerifier::create(device));
+        const std::uint32_t bounces = reader.info().settings.maxBounces;
+        const VerifySettings settings{.width = size_.x,
+                                      .height = size_.y,
+                                      .samples = options_.samples,
+                                      .maxBounces = bounces == 0 ? VerifySettings{}.maxBounces : bounces};
+        for (const Camera& camera : cameras) {
+            reporter_.progress(fmt::format("camera {}", camera.name));
+            PFVOX_TRY(const VerifiedPicture, picture,
+                      verifier.render(device, {loaded, scene, probes, camera}, settings));
+            const VerifyScore score = scoreOf(picture);
+            report(camera, picture, score);
+            if (!options_.output.empty()) PFVOX_CHECK(writePictures(options_.output, camera, picture, score));
+        }
+        return {};
+    }
+
+    void report(const Camera& camera, const VerifiedPicture& picture, const VerifyScore& score) {
+        if (options_.common.json) reporter_.jsonLine(jsonText(scoreJson(camera, picture, score)));
+        const auto percent = [](double share) { return fmt::format("{:.2f} %", 100.0 * share); };
+        const auto tier = [&](gpu::ProbeTier t) { return percent(score.tierShares[static_cast<std::size_t>(t)]); };
+        table_.addRow({camera.name, formatCount(score.surfacePixels), formatCount(score.withoutValue),
+                       tier(gpu::ProbeTier::Texels), tier(gpu::ProbeTier::Compact), tier(gpu::ProbeTier::Nearest),
+                       percent(score.relativeRmse), percent(score.relativeTexelRmse), percent(score.relativeNoise),
+                       fmt::format("{:.2f}", score.psnrDecibel), fmt::format("{:.4f}", score.meanFlip)});
+        const auto add = [&](std::string what) {
+            complaint_ += (complaint_.empty() ? "" : "; ") + camera.name + ": " + std::move(what);
+        };
+        if (score.withoutValue != 0) {
+            withoutValue_ = true;
+            add(plural(score.withoutValue, "pixel") + " without value");
+        }
+        if (options_.maxRmsePercent && 100.0 * score.relativeRmse > *options_.maxRmsePercent)
+            add("RMSE " + percent(score.relativeRmse));
+        if (options_.maxFlip && score.meanFlip > *options_.maxFlip) add(fmt::format("FLIP {:.4f}", score.meanFlip));
+    }
+
+    const VerifyOptions& options_;
+    const Limits& limits_;
+    Reporter& reporter_;
+    glm::uvec2 size_;
+    Table table_{{{"camera"},
+                  {"pixels", Align::Right},
+                  {"no value", Align::Right},
+                  {"texels", Align::Right},
+                  {"compact", Align::Right},
+                  {"nearest", Align::Right},
+                  {"RMSE/mean", Align::Right},
+                  {"of texels", Align::Right},
+                  {"noise", Align::Right},
+                  {"PSNR, dB", Align::Right},
+                  {"FLIP", Align::Right}}};
+    std::string complaint_;
+    bool withoutValue_ = false;
+};
+
+ExitCode runVerify(const CLI::App& command, const VerifyOptions& options) {
+    Reporter reporter(options.common.reporterSettings());
+    const auto limits = parseLimits(options.common.limits);
+    if (!limits) return usageError(command, limits.error());
+    const auto size = parseSize(options.size);
+    if (!size) return usageError(command, "--size " + options.size + ": not two numbers from 8 to 4096 with an x between them");
+    VerifyRun run(options, *limits, reporter, *size);
+    const auto status = run.run();
+    if (!status) {
+        reporter.error(status.error());
+        return exitCodeOf(status.error().code);
+    }
+    reporter.result(run.text());
+    if (run.complaint().empty()) return ExitCode::Ok;
+    reporter.error("the probes fail: " + run.complaint());
+    return run.withoutValue() ? ExitCode::InvalidInput : ExitCode::SomeFailed;
+}
+
+}  // namespace
+
+Command makeVerifyCommand(CLI::App& tool) {
+    auto options = std::make_shared<VerifyOptions>();
+    CLI::App& command = addCommand(tool, "verify", helpText());
+    command.add_option("input", options->inputs)->required()->expected(2)->group(group::kInputOutput);
+    command.add_option("-o,--output", options->output, "folder for the pictures: probes, reference, FLIP and tiers")
+        ->option_text("FOLDER")
+        ->group(group::kInputOutput);
+    command.add_option("--camera", options->cameras, "a camera of the scene; may be given again (default: all)")
+        ->option_text("NAME")
+        ->expected(1)
+        ->take_all()
+        ->group(kVerifying);
+    command.add_option("--size", options->size, "of the pictures (default 320x180)")->option_text("WxH")->group(kVerifying);
+    command.add_option("--samples", options->samples, "paths a pixel of the reference, 2 to 65536 (default 256)")
+        ->option_text("N")
+        ->check(numberFrom(2, 65536))
+        ->group(kVerifying);
+    command.add_flag("--compact", options->compact, "look at the small maps only")->group(kVerifying);
+    command.add_option("--max-rmse", options->maxRmsePercent, "fail when RMSE / mean of a camera is above, percent")
+        ->option_text("PERCENT")
+        ->check(numberFrom(0, 1e6))
+        ->group(kVerifying);
+    command.add_option("--max-flip", options->maxFlip, "fail when the mean FLIP of a camera is above, 0 to 1")
+        ->option_text("VALUE")
+        ->check(numberFrom(0, 1))
+        ->group(kVerifying);
+    addDeviceOption(command, options->device);
+    addCommonOptions(command, options->common);
+    return {.app = &command, .run = [&command, options] { return runVerify(command, *options); }};
+}
+
+}  // namespace pfvox::tools
