@@ -64,15 +64,18 @@ TEST_F(ProbeBakeScene, ShardsMergeToTheWhole) {
 TEST_F(ProbeBakeScene, CtrlCLeavesWhatResumeTakes) {
     writeScene("scene.toml", "box.pf_vox", kGrid);
     const std::vector<std::string> arguments{PFVOX_PROBE_BAKE, "scene.toml",   "-o",        "out.pf_probe", "--resolution",
-                                             "64,32,4,6",      "--samples",    "512"};
+                                             "64,32,4,6",      "--samples",    "1024"};
     ProcessSetup setup{.environment = {}, .input = {}, .folder = folder.path()};
     Process process(arguments, setup);
     const std::filesystem::path journal = folder / "out.pf_probe.journal";
-    std::error_code absent;
-    for (int i = 0; i < 600; ++i) {
+    // The head of the journal comes first; what it grows by are probes.
+    std::uintmax_t headBytes = 0;
+    for (int i = 0; i < 3000; ++i) {
+        std::error_code absent;
         const auto bytes = std::filesystem::file_size(journal, absent);
-        if (!absent && bytes > 30000) break;  // a probe or two
-        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        if (!absent && headBytes == 0) headBytes = bytes;
+        if (!absent && headBytes != 0 && bytes > headBytes) break;
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
     process.send(SIGINT);
     const ProcessResult stopped = process.finish();
