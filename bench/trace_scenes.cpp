@@ -1,8 +1,8 @@
 #include "trace_scenes.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <pfvox/pf_vox.hpp>
+#include <pfvox/scene.hpp>
 
 #include "measured_models.hpp"
 #include "noise.hpp"
@@ -35,29 +35,9 @@ std::vector<TraceCamera> terrainCameras() {
             {"grazing", {200.4, ridge + 8.5, 200.7}, {1800, ridge - 10, 1700}, 60.0}};
 }
 
-struct WorldBox {
-    glm::dvec3 min{std::numeric_limits<double>::infinity()};
-    glm::dvec3 max{-std::numeric_limits<double>::infinity()};
-};
-
-WorldBox boxOf(const OctreeAsset& asset) {
-    WorldBox box;
-    for (const Instance& instance : asset.instances) {
-        const VoxelBox& b = asset.models[instance.model].bounds;
-        for (int corner = 0; corner < 8; ++corner) {
-            const glm::dvec4 p((corner & 1) != 0 ? b.max.x : b.min.x, (corner & 2) != 0 ? b.max.y : b.min.y,
-                               (corner & 4) != 0 ? b.max.z : b.min.z, 1.0);
-            const glm::dvec3 w = instance.worldFromModel * p;
-            box.min = glm::min(box.min, w);
-            box.max = glm::max(box.max, w);
-        }
-    }
-    return box;
-}
-
 /// From a quarter of the way, from outside of everything, and along the ground.
 std::vector<TraceCamera> fittedCameras(const OctreeAsset& asset) {
-    const WorldBox box = boxOf(asset);
+    const WorldBounds box = boundsOf(asset);
     const glm::dvec3 size = box.max - box.min;
     const auto at = [&](double x, double y, double z) { return box.min + glm::dvec3(x, y, z) * size; };
     const double across = std::max(size.x, size.z);

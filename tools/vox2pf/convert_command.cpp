@@ -59,7 +59,7 @@ void addOctreeOptions(CLI::App& command, ConvertOptions& options) {
     command
         .add_option_function<std::string>(
             "--profile", [&patch](const std::string& name) { patch.profile = parseProfile(name); },
-            "packed (default): small; resident: as the GPU reads it")
+            "packed (default): small; resident: raw words, nothing to decode")
         ->option_text("NAME")
         ->check(CLI::IsMember({"packed", "resident"}))
         ->group(group::kConversion);
