@@ -1,22 +1,14 @@
-// What a probe sees: distance, normal, and what leaves each texel's surface without indirect light.
+// What the probes of a group see: distance, normal, and what leaves each texel's surface without indirect light.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_buffer_reference_uvec2 : require
 
-#include "shared/bake.glsl.h"
-#include "shared/probe_maths.glsl.h"
-#define PFVOX_TRACE_GROUP_SIZE kBakeGroupSize
-#include "bake_rays.glsl"
+#include "bake_wave.glsl"
 
-layout(local_size_x = kBakeGroupSize) in;
-
-layout(buffer_reference, std430, buffer_reference_align = 16) writeonly buffer SeenTexels { SeenTexel at[]; };
-layout(push_constant) uniform Push { GeometryPush push; };
-
-SeenTexel seen(BakeScene bake, vec3 direction, inout RayCounts counts) {
+SeenTexel seen(BakeWave wave, BakeScene bake, vec3 probe, vec3 direction, inout RayCounts counts) {
     Scene scene = Scene(bake.scene);
-    Ray ray = Ray(push.probe, kInfinity, direction, 0.0);
+    Ray ray = Ray(probe, kInfinity, direction, 0.0);
     Hit hit = castRay(scene, ray, counts);
     if (hit.instance == kNoInstance)
         return SeenTexel(vec3(0.0), -1.0, skyRadiance(bake, direction), kDepthMiss, vec3(0.0), 0.0);
@@ -27,7 +19,7 @@ SeenTexel seen(BakeScene bake, vec3 direction, inout RayCounts counts) {
     texel.metres = hit.t;
     texel.albedo = albedoOf(scene, surface);
     texel.offset = rayOffset(surface);
-    texel.word = packDepthNormal(depthCode(hit.t, push.depthScale, push.depthLogRange), surface.normal);
+    texel.word = packDepthNormal(depthCode(hit.t, wave.depthScale, wave.depthLogRange), surface.normal);
     texel.direct = emissionOf(material);
     if (hasSun(bake, surface.normal)) {
         vec3 sun = sunAt(bake, surface.position + texel.offset * surface.normal, counts);
@@ -37,10 +29,14 @@ SeenTexel seen(BakeScene bake, vec3 direction, inout RayCounts counts) {
 }
 
 void main() {
-    if (gl_GlobalInvocationID.x >= push.texelCount) return;
-    uint index = push.firstTexel + gl_GlobalInvocationID.x;
+    if (invocationIndex() >= push.count) return;
+    BakeWave wave = Waves(push.wave).at[0];
+    uint index = push.first + invocationIndex();
+    uint texels = wave.depthEdge * wave.depthEdge;
+    uint texel = index % texels;
+    vec3 direction = directionOfTexel(texel % wave.depthEdge, texel / wave.depthEdge, wave.depthEdge);
     RayCounts counts = RayCounts(0u, TraceStatistics(0u, 0u));
-    vec3 direction = directionOfTexel(index % push.edge, index / push.edge, push.edge);
-    SeenTexels(push.texels).at[index] = seen(BakeScenes(push.scene).at[0], direction, counts);
-    if (counts.trace.capped != 0u) atomicAdd(Counters(push.counters).at[0].cappedRays, 1u);
+    vec3 probe = Probes(wave.probes).at[index / texels].position;
+    SeenTexels(wave.texels).at[index] = seen(wave, BakeScenes(wave.scene).at[0], probe, direction, counts);
+    countCapped(wave, counts.trace);
 }

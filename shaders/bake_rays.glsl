@@ -1,4 +1,4 @@
-// What both programs of the baker share: rays that start off surfaces and go through glass, sky, and the sun. The
+// What the programs of the baker and of verify share: rays that start off surfaces and go through glass, sky, and the sun. The
 // includer defines PFVOX_TRACE_GROUP_SIZE.
 #ifndef PFVOX_BAKE_RAYS_GLSL
 #define PFVOX_BAKE_RAYS_GLSL
@@ -12,7 +12,6 @@ layout(constant_id = 0) const uint kHasGlass = 0u;
 
 layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer BakeScenes { BakeScene at[]; };
 layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer Emitters { EmitterFace at[]; };
-layout(buffer_reference, std430, buffer_reference_align = 16) buffer Counters { BakeCounters at[]; };
 
 struct RayCounts {
     uint rays;

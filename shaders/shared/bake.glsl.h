@@ -1,4 +1,12 @@
-// What the baker's programs read and write: bake_geometry.comp and bake_light.comp, driven by libbake/src/bake.
+// What the baker's programs read and write, driven by libbake/src/bake (docs/decisions/015-wavefront.md):
+//
+//     bake_geometry                what the probes of a group see
+//     bake_tiles                   noise of each tile of texels; the CPU lists the work of the next round by it
+//     bake_begin                   a wave of paths, 16 for each texel of each item of work
+//     bake_cast, bake_scatter,     one vertex further: closest hits, light and new directions,
+//     bake_queue, bake_cast ...    how much is left, shadow rays to the sun and to emitters; until no path is left
+//     bake_gather                  sums of the paths of each texel, in their order
+//     bake_finish                  the maps of the group
 #ifndef PFVOX_SHARED_BAKE_GLSL_H
 #define PFVOX_SHARED_BAKE_GLSL_H
 
@@ -7,9 +15,11 @@
 PFVOX_SHARED_BEGIN
 
 PFVOX_CONSTANT(uint, kBakeGroupSize, 64u);
-PFVOX_CONSTANT(uint, kTileEdge, 8u);         // a workgroup of bake_light is a tile of texels
+PFVOX_CONSTANT(uint, kBakeRowGroups, 32768u);  // workgroups along x of a launch of more than one row
+PFVOX_CONSTANT(uint, kTileEdge, 8u);
 PFVOX_CONSTANT(uint, kTileTexels, 64u);
-PFVOX_CONSTANT(uint, kBatchSamples, 16u);    // paths that one invocation sums up
+PFVOX_CONSTANT(uint, kBatchSamples, 16u);    // paths that are summed before anything else is added
+PFVOX_CONSTANT(uint, kItemPaths, 1024u);     // kTileTexels x kBatchSamples
 PFVOX_CONSTANT(uint, kMaxBlockEdge, 4u);     // texels of the depth map along one of the light map, at most
 PFVOX_CONSTANT(uint, kRouletteBounce, 3u);   // the first bounce that roulette may end
 PFVOX_CONSTANT(uint, kMaxPathBounces, 128u);  // 0.95^128 of the light is left then, at most
@@ -66,40 +76,122 @@ PFVOX_STRUCT(SeenTexel) {
 };
 PFVOX_SIZE(SeenTexel, 48);
 
-PFVOX_STRUCT(GeometryPush) {
-    uvec2 scene;    // BakeScene
-    uvec2 texels;   // SeenTexel[edge^2]
-    vec3 probe;     // metres
-    uint edge;
-    float depthScale;
-    float depthLogRange;
-    uint firstTexel;
-    uint texelCount;
-    uvec2 counters;  // BakeCounters
-    uvec2 reserved0;
-};
-PFVOX_SIZE(GeometryPush, 64);
+// --- A group of probes ---
 
-PFVOX_STRUCT(LightPush) {
-    uvec2 scene;
-    uvec2 texels;
-    vec3 probe;
+PFVOX_STRUCT(BakeProbe) {
+    vec3 position;  // metres
+    uint index;     // in the grid
+};
+PFVOX_SIZE(BakeProbe, 16);
+
+// Of one tile of the light map, after `batches` batches.
+PFVOX_STRUCT(TileStatistics) {
+    float mean;           // sum over its texels of the mean channel of I
+    float squaredError;   // sum over its texels of the squared standard error of that
+    uint surfaceTexels;   // those that see a surface
+    uint batches;
+};
+PFVOX_SIZE(TileStatistics, 16);
+
+// --- A wave of paths ---
+
+// Path i is sample (i / 64) % 16 of texel i % 64 of the tile and batch of item i / 1024.
+PFVOX_STRUCT(PathState) {
+    vec3 origin;      // of its ray
+    float density;    // of the ray's direction, per steradian; < 0: no emitter sampling could have found it
+    vec3 direction;
+    float travelled;  // metres since the last vertex that scattered
+    vec3 throughput;
+    uint steps;       // vertices behind the texel's; << 16: steps through glass
+    uint lastGlass;   // the body that the ray is in
+    uint key;         // of its random numbers
+    uint sampleIndex;
+    uint reserved;
+};
+PFVOX_SIZE(PathState, 64);
+
+PFVOX_STRUCT(PathHit) {
+    vec3 corner;
+    float t;
+    uint instance;
+    uint node;
+    uint scale;
+    uint reserved;
+};
+PFVOX_SIZE(PathHit, 32);
+
+PFVOX_STRUCT(ShadowRay) {
+    vec3 origin;
+    float metres;
+    vec3 direction;
+    uint path;
+    vec3 light;  // that arrives if nothing is in between
+    float reserved;
+};
+PFVOX_SIZE(ShadowRay, 48);
+
+// Consecutive items of one tile.
+PFVOX_STRUCT(GatherRun) {
+    uint firstItem;
+    uint itemCount;
+    uint tile;       // of the group
+    uint reserved;
+};
+PFVOX_SIZE(GatherRun, 16);
+
+// What waits: rays of paths, shadow rays to the sun, shadow rays to emitters.
+PFVOX_CONSTANT(uint, kQueueRays, 0u);
+PFVOX_CONSTANT(uint, kQueueSun, 1u);
+PFVOX_CONSTANT(uint, kQueueEmitters, 2u);
+PFVOX_CONSTANT(uint, kQueueKinds, 4u);
+
+PFVOX_STRUCT(WaveControl) {
+    uint waiting[8];    // by set (0, 1) and queue: kQueueKinds x set + queue
+    uint taken[4];      // by queue: the next one that a persistent lane takes
+    uint launch[16];    // by queue: workgroups along x, y, z of a launch that covers it
+    uint raysLow;       // cast since the bake began
+    uint raysHigh;
+    uint cappedRays;    // given up by the traversal
+    uint reserved;
+};
+PFVOX_SIZE(WaveControl, 128);
+PFVOX_OFFSET(WaveControl, launch, 48);
+PFVOX_OFFSET(WaveControl, raysLow, 112);
+
+// All that the programs work on.
+PFVOX_STRUCT(BakeWave) {
+    uvec2 scene;        // BakeScene
+    uvec2 probes;       // BakeProbe[] of the group
+    uvec2 texels;       // SeenTexel[depthEdge^2] of each probe
+    uvec2 sums;         // vec4[lightEdge^2] of each probe: radiance of its paths; w: Welford's sum of squares of its batches
+    uvec2 tiles;        // TileStatistics[] of each probe
+    uvec2 items;        // uvec2[]: tile of the group, batch
+    uvec2 runs;         // GatherRun[]
+    uvec2 paths;        // PathState[]
+    uvec2 arrived;      // vec4[]: radiance that each path has brought so far
+    uvec2 hits;         // PathHit[], beside the queue
+    uvec2 rays[2];      // uint[] by set: paths whose ray waits
+    uvec2 shadowRays[2];  // ShadowRay[]: to the sun, to emitters
+    uvec2 control;      // WaveControl
+    uvec2 maps;         // by probe, see bake_finish.comp
     uint depthEdge;
-    uvec2 items;     // uvec2[]: tile, first sample; one a workgroup
-    uvec2 sums;      // vec4[kTileTexels] for each of them: radiance of kBatchSamples paths; w: bits of the rays cast
     uint lightEdge;
-    uint probeIndex;  // in the grid
-    uvec2 counters;
+    float depthScale;   // of DepthCoder
+    float depthLogRange;
 };
-PFVOX_SIZE(LightPush, 64);
+PFVOX_SIZE(BakeWave, 144);
+PFVOX_OFFSET(BakeWave, depthEdge, 128);
 
-PFVOX_STRUCT(BakeCounters) {
-    uint cappedRays;
+PFVOX_STRUCT(WavePush) {
+    uvec2 wave;   // BakeWave
+    uint first;   // what the launch covers: texels, tiles, items or runs
+    uint count;
+    uint set;     // of the queues: read from here, and written to the other one
     uint reserved0;
     uint reserved1;
     uint reserved2;
 };
-PFVOX_SIZE(BakeCounters, 16);
+PFVOX_SIZE(WavePush, 32);
 
 PFVOX_SHARED_END
 #endif

@@ -110,6 +110,9 @@ struct Dispatch {
     const Program* program = nullptr;
     std::span<const std::byte> pushConstants;
     glm::uvec3 groups{1};
+    /// When set, the device reads the workgroups from there at launch: three words at `groupsAtBytes`, a multiple of 4.
+    const Buffer* groupsFrom = nullptr;
+    std::uint64_t groupsAtBytes = 0;
 };
 
 /// The bytes of a push constant block.

@@ -1,8 +1,8 @@
-// bakeProbes: probe by probe, tracing on this thread, small layers and writing on others.
+// bakeProbes: a group of probes at a time, tracing on this thread, small layers and writing on others.
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 #include <tbb/task_group.h>
 
-#include <atomic>
 #include <chrono>
 #include <mutex>
 #include <pfvox/bake.hpp>
@@ -22,9 +22,6 @@ namespace {
 using namespace bake;
 using Clock = std::chrono::steady_clock;
 
-/// Probes whose maps are being made or written while the device goes on: each holds its traced maps.
-constexpr int kMostInFlight = 4;
-
 double secondsSince(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
@@ -32,7 +29,6 @@ double secondsSince(Clock::time_point start) {
 /// What the threads behind the device have done.
 struct Background {
     tbb::task_group tasks;
-    std::atomic<int> inFlight{0};
     std::mutex mutex;  ///< of all below
     std::optional<Error> error;
     double smallLayersMs = 0.0;
@@ -116,17 +112,20 @@ class Baker {
         const ContentKey field = fieldHash(info_, settings_);
         Background background;
         report_.probes = info_.range.size();
+        records_.resize(info_.range.size());
+        std::vector<std::uint32_t> group;
         for (std::uint32_t probe = info_.range.first; probe < info_.range.end; ++probe) {
-            const ContentKey input = probeHash(field, probe);
-            if (settings_.resume && writer.reuse(probe, input)) {
+            if (settings_.resume && writer.reuse(probe, probeHash(field, probe))) {
+                PFVOX_TRY(const ProbeData, data, writer.readProbe(probe));
+                records_[probe - info_.range.first] = data.record;
                 ++report_.reused;
                 PFVOX_CHECK(pieceDone());
-                continue;
+            } else {
+                group.push_back(probe);
             }
-            PFVOX_CHECK(bakeOne(probe, input, tracer, writer, background));
-            ++baked_;
-            PFVOX_CHECK(pieceDone());
-            PFVOX_CHECK(errorOf(background));
+            if (group.size() < tracer.groupSize() && probe + 1 != info_.range.end) continue;
+            PFVOX_CHECK(bakeGroup(group, field, tracer, writer, background));
+            group.clear();
         }
         background.tasks.wait();
         PFVOX_CHECK(errorOf(background));
@@ -143,31 +142,47 @@ class Baker {
         return {};
     }
 
-    Result<void> bakeOne(std::uint32_t probe, const ContentKey& input, ProbeTracer& tracer, ProbeFileWriter& writer,
-                         Background& background) {
-        const Placement placement = placeProbe(solids_, info_.grid, probe, settings_.relocate);
-        ProbeRecord record{.offset = placement.offset, .state = placement.state};
-        if (!record.isActive()) return writer.append(probe, {.record = record, .inputHash = input});
-        const glm::vec3 position = info_.grid.pointOf(probe) + placement.offset;
-        PFVOX_TRY(auto, seen, tracer.see(position, workOf(report_.geometry)));
-        PFVOX_TRY(const TileSums, sums, tracer.light(probe, position, seen, workOf(report_.light)));
-        record.error = static_cast<float>(sums.meanError());
-        record.cappedTileShare = static_cast<float>(sums.cappedTileShare());
-        samples_ += sums.samples();
-        surfaceTexels_ += sums.surfaceTexels();
-        auto traced = std::make_shared<TracedProbe>(
-            TracedProbe{.seen = std::move(seen), .light = sums.means(), .edges = tracer.edges()});
-        while (background.inFlight.load() >= kMostInFlight) background.tasks.wait();
-        ++background.inFlight;
-        background.tasks.run([this, probe, input, record, traced, &writer, &background] {
-            const Result<void> written = writeOne(probe, input, record, *traced, writer, background);
-            if (!written) {
+    /// Places the probes; traces those that have a place, and gives them to the threads behind.
+    Result<void> bakeGroup(std::span<const std::uint32_t> group, const ContentKey& field, ProbeTracer& tracer,
+                           ProbeFileWriter& writer, Background& background) {
+        std::vector<Placement> placements(group.size());
+        tbb::parallel_for(std::size_t{0}, group.size(), [&](std::size_t i) {
+            placements[i] = placeProbe(solids_, info_.grid, group[i], settings_.relocate);
+        });
+        std::vector<shared::BakeProbe> traced;
+        for (std::size_t i = 0; i < group.size(); ++i) {
+            ProbeRecord& record = records_[group[i] - info_.range.first];
+            record = {.offset = placements[i].offset, .state = placements[i].state};
+            if (record.isActive())
+                traced.push_back({.position = info_.grid.pointOf(group[i]) + record.offset, .index = group[i]});
+            else
+                PFVOX_CHECK(writer.append(group[i], {.record = record, .inputHash = probeHash(field, group[i])}));
+        }
+        if (!traced.empty()) {
+            PFVOX_CHECK(tracer.see(traced, workOf(report_.geometry)));
+            PFVOX_CHECK(tracer.light(workOf(report_.light)));
+            background.tasks.wait();  // the group before: its maps lie in memory until they are written
+            PFVOX_CHECK(errorOf(background));
+        }
+        for (std::uint32_t i = 0; i < traced.size(); ++i) {
+            PFVOX_TRY(TracedProbe, maps, tracer.collect(i));
+            const std::uint32_t probe = traced[i].index;
+            ProbeRecord& record = records_[probe - info_.range.first];
+            record.error = static_cast<float>(maps.tiles.meanError);
+            record.cappedTileShare = static_cast<float>(maps.tiles.cappedTileShare);
+            samples_ += maps.tiles.samples;
+            surfaceTexels_ += maps.tiles.surfaceTexels;
+            background.tasks.run([this, probe, record, input = probeHash(field, probe),
+                                  shared = std::make_shared<const TracedProbe>(std::move(maps)), &writer, &background] {
+                const Result<void> written = writeOne(probe, input, record, *shared, writer, background);
+                if (written) return;
                 const std::scoped_lock lock(background.mutex);
                 if (!background.error) background.error = written.error();
-            }
-            --background.inFlight;
-        });
-        return {};
+            });
+        }
+        baked_ += group.size();
+        PFVOX_CHECK(pieceDone());
+        return errorOf(background);
     }
 
     Result<void> writeOne(std::uint32_t probe, const ContentKey& input, const ProbeRecord& record,
@@ -213,15 +228,10 @@ class Baker {
     // --- After ---
 
     Result<void> finish(ProbeFileWriter& writer, const std::filesystem::path& output) {
-        std::vector<ProbeRecord> records;
-        for (std::uint32_t probe = info_.range.first; probe < info_.range.end; ++probe) {
-            PFVOX_TRY(const ProbeData, data, writer.readProbe(probe));
-            records.push_back(data.record);
-        }
-        count(records);
+        count(records_);
         std::optional<ProximityGrid> grid;
         if (settings_.proximity && info_.isWhole() && info_.resolution.depth != 0) {
-            PFVOX_TRY(ProximityGrid, made, makeProximity(writer, records));
+            PFVOX_TRY(ProximityGrid, made, makeProximity(writer, records_));
             grid = std::move(made);
         }
         const auto began = Clock::now();
@@ -285,6 +295,7 @@ class Baker {
     std::vector<PlacedModel> models_;
     SolidQuery solids_;
     BakeReport report_;
+    std::vector<ProbeRecord> records_;  ///< from range.first on
     std::uint64_t baked_ = 0;
     std::uint64_t samples_ = 0;
     std::uint64_t surfaceTexels_ = 0;

@@ -103,7 +103,9 @@ namespace bake {
 
 ContentKey shaderHash() {
     Hasher hasher;
-    hasher.addAll(shaders::kBakeGeometry).addAll(shaders::kBakeLight);
+    for (const auto& shader : {shaders::kBakeGeometry, shaders::kBakeTiles, shaders::kBakeBegin, shaders::kBakeCast,
+                               shaders::kBakeScatter, shaders::kBakeQueue, shaders::kBakeGather, shaders::kBakeFinish})
+        hasher.addAll(shader);
     return hasher.key();
 }
 

@@ -1,8 +1,11 @@
 #include "bake/probe_tracer.hpp"
 
-#include <bit>
+#include <fmt/format.h>
+
+#include <array>
 #include <chrono>
 #include <cmath>
+#include <pfvox/assert.hpp>
 #include <pfvox/probe_maths.hpp>
 #include <pfvox_shaders/shaders.hpp>
 
@@ -10,19 +13,33 @@ namespace pfvox::bake {
 
 namespace {
 
-constexpr std::size_t kMostItems = 4096;
-/// llvmpipe seems to bound the loops of an invocation: docs/decisions/013-baker.md.
-constexpr std::uint32_t kSoftwareSamplesPerRun = 1;
+constexpr std::uint64_t kMostGroup = 64;
+/// Probes of a group bring this many waves of paths, so that what is done once a group does not count.
+constexpr std::uint64_t kWavesPerGroup = 8;
 
-class Stopwatch {
-  public:
-    double seconds() const {
-        return std::chrono::duration<double>(std::chrono::steady_clock::now() - started_).count();
-    }
+std::uint64_t mapWords(const TracedEdges& edges) {
+    return 2ull * edges.depth * edges.depth + 7ull * edges.light * edges.light;
+}
 
-  private:
-    std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();
-};
+std::uint64_t bytesPerProbe(const TracedEdges& edges) {
+    const std::uint64_t light = std::uint64_t{edges.light} * edges.light;
+    return std::uint64_t{edges.depth} * edges.depth * sizeof(shared::SeenTexel) + light * sizeof(glm::vec4) +
+           light / shared::kTileTexels * sizeof(shared::TileStatistics) + mapWords(edges) * sizeof(std::uint32_t);
+}
+
+/// Enough for full waves, in an eighth of the device's memory; a software device has one wave's worth, so that a kill
+/// loses little.
+std::uint32_t groupFor(const gpu::DeviceInfo& device, const TracedEdges& edges, const BakeSettings& settings,
+                       std::uint64_t wavePaths) {
+    const bool software = device.kind == gpu::DeviceKind::Software;
+    const std::uint64_t paths = std::uint64_t{edges.light} * edges.light * settings.minSamples;
+    const std::uint64_t wanted = (software ? 1 : kWavesPerGroup) * wavePaths / paths;
+    const std::uint64_t memory = software ? std::uint64_t{256} << 20 : device.localMemoryBytes / 8;
+    // Indices of texels and of words of maps have 32 bits.
+    const std::uint64_t addressable = 0xffffffffull / mapWords(edges);
+    const std::uint64_t fitting = std::min(memory / bytesPerProbe(edges), addressable);
+    return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(std::min(wanted, fitting), 1, kMostGroup));
+}
 
 shared::BakeScene sceneRecord(const gpu::Scene& scene, const TracerInput& input, const BakeSettings& settings,
                               const gpu::Buffer& emitters) {
@@ -44,6 +61,24 @@ shared::BakeScene sceneRecord(const gpu::Scene& scene, const TracerInput& input,
             .reserved2 = 0};
 }
 
+WaveOptions waveOptions(const TracerInput& input, const BakeSettings& settings) {
+    const glm::dvec3& sun = input.sun.irradiance;
+    return {.hasGlass = input.hasGlass,
+            .hasSun = std::max({sun.x, sun.y, sun.z}) > 0.0,
+            .hasEmitters = !input.emitters.faces.empty() && settings.sampling != LightSampling::Directions,
+            .maxBounces = std::min(settings.maxBounces.value_or(shared::kMaxPathBounces), shared::kMaxPathBounces),
+            .submitSeconds = settings.dispatchSeconds};
+}
+
+template <class T>
+Result<void> fill(gpu::Device& device, const gpu::Buffer& source, std::uint64_t& at, std::size_t count,
+                  std::vector<T>& values) {
+    values.resize(count);
+    const std::uint64_t from = at;
+    at += count * sizeof(T);
+    return device.download(source, from, std::as_writable_bytes(std::span(values)));
+}
+
 }  // namespace
 
 TracedEdges tracedEdges(const ProbeResolution& resolution) {
@@ -55,154 +90,167 @@ TracedEdges tracedEdges(const ProbeResolution& resolution) {
     return {depth, depth / block};
 }
 
-void ProbeTracer::Pace::took(std::size_t size, double seconds, double target) {
-    const double fitting = static_cast<double>(size) * 0.7 * target / std::max(seconds, 1e-6);
-    const double grown = std::clamp(fitting, 1.0, 4.0 * static_cast<double>(size_));
-    size_ = std::min(static_cast<std::size_t>(grown), most_);
+Result<ProbeTracer::Programs> ProbeTracer::createPrograms(gpu::Device& device, bool hasGlass) {
+    const std::uint32_t glass = hasGlass ? 1 : 0;
+    const std::array resetting{glass, 1u};
+    const auto create = [&](std::span<const std::uint32_t> spirv, std::string_view name,
+                            std::span<const std::uint32_t> constants) {
+        return device.createProgram(spirv, sizeof(shared::WavePush), name, constants);
+    };
+    const auto onlyGlass = std::span(resetting).first(1);
+    PFVOX_TRY(gpu::Program, geometry, create(shaders::kBakeGeometry, "bake geometry", onlyGlass));
+    PFVOX_TRY(gpu::Program, resetTiles, create(shaders::kBakeTiles, "bake reset tiles", resetting));
+    PFVOX_TRY(gpu::Program, tiles, create(shaders::kBakeTiles, "bake tiles", onlyGlass));
+    PFVOX_TRY(gpu::Program, finish, create(shaders::kBakeFinish, "bake finish", onlyGlass));
+    return Programs{std::move(geometry), std::move(resetTiles), std::move(tiles), std::move(finish)};
 }
 
-Result<ProbeTracer::Buffers> ProbeTracer::createBuffers(gpu::Device& device, const TracerInput& input,
-                                                        const TracedEdges& edges) {
-    const std::uint64_t faces = std::max<std::uint64_t>(input.emitters.faces.size(), 1);
-    const std::uint64_t texels = std::uint64_t{edges.depth} * edges.depth;
+Result<ProbeTracer::Buffers> ProbeTracer::createBuffers(gpu::Device& device, const EmitterList& emitters,
+                                                        const TracedEdges& edges, std::uint32_t probes) {
+    const std::uint64_t faces = std::max<std::uint64_t>(emitters.faces.size(), 1);
+    const std::uint64_t texels = std::uint64_t{probes} * edges.depth * edges.depth;
+    const std::uint64_t light = std::uint64_t{probes} * edges.light * edges.light;
+    const std::uint64_t tiles = light / shared::kTileTexels;
     PFVOX_TRY(gpu::Buffer, scene, device.createBuffer(sizeof(shared::BakeScene), "bake scene"));
-    PFVOX_TRY(gpu::Buffer, emitters, device.createBuffer(faces * sizeof(shared::EmitterFace), "emitters"));
+    PFVOX_TRY(gpu::Buffer, faceList, device.createBuffer(faces * sizeof(shared::EmitterFace), "emitters"));
+    PFVOX_TRY(gpu::Buffer, wave, device.createBuffer(sizeof(shared::BakeWave), "bake wave"));
+    PFVOX_TRY(gpu::Buffer, places, device.createBuffer(probes * sizeof(shared::BakeProbe), "probes"));
     PFVOX_TRY(gpu::Buffer, seen, device.createBuffer(texels * sizeof(shared::SeenTexel), "seen texels"));
-    PFVOX_TRY(gpu::Buffer, items, device.createBuffer(kMostItems * sizeof(LightItem), "light items"));
-    PFVOX_TRY(gpu::Buffer, sums,
-              device.createBuffer(kMostItems * shared::kTileTexels * sizeof(glm::vec4), "light sums"));
-    PFVOX_TRY(gpu::Buffer, counters, device.createBuffer(sizeof(shared::BakeCounters), "bake counters"));
-    if (!input.emitters.faces.empty())
-        PFVOX_CHECK(device.upload(emitters, 0, std::as_bytes(std::span(input.emitters.faces))));
-    PFVOX_CHECK(device.upload(counters, 0, gpu::bytesOf(shared::BakeCounters{})));
-    return Buffers{std::move(scene), std::move(emitters), std::move(seen),
-                   std::move(items), std::move(sums),     std::move(counters)};
+    PFVOX_TRY(gpu::Buffer, sums, device.createBuffer(light * sizeof(glm::vec4), "light sums"));
+    PFVOX_TRY(gpu::Buffer, noise, device.createBuffer(tiles * sizeof(shared::TileStatistics), "tiles"));
+    PFVOX_TRY(gpu::Buffer, maps, device.createBuffer(probes * mapWords(edges) * sizeof(std::uint32_t), "maps"));
+    if (!emitters.faces.empty()) PFVOX_CHECK(device.upload(faceList, 0, std::as_bytes(std::span(emitters.faces))));
+    return Buffers{std::move(scene), std::move(faceList), std::move(wave),  std::move(places),
+                   std::move(seen),  std::move(sums),     std::move(noise), std::move(maps)};
 }
 
 Result<ProbeTracer> ProbeTracer::create(gpu::Device& device, const gpu::Scene& scene, const TracerInput& input,
                                         const BakeSettings& settings) {
-    const bool software = device.info().kind == gpu::DeviceKind::Software;
-    const std::uint32_t samplesPerRun = software ? kSoftwareSamplesPerRun : shared::kBatchSamples;
-    const std::uint32_t constants[] = {input.hasGlass ? 1u : 0u, samplesPerRun};
-    PFVOX_TRY(gpu::Program, geometry,
-              device.createProgram(shaders::kBakeGeometry, sizeof(shared::GeometryPush), "bake geometry",
-                                   std::span(constants).first(1)));
-    PFVOX_TRY(gpu::Program, light,
-              device.createProgram(shaders::kBakeLight, sizeof(shared::LightPush), "bake light", constants));
     const TracedEdges edges = tracedEdges(settings.resolution);
-    PFVOX_TRY(Buffers, buffers, createBuffers(device, input, edges));
+    PFVOX_TRY(Programs, programs, createPrograms(device, input.hasGlass));
+    PFVOX_TRY(PathWaves, waves, PathWaves::create(device, waveOptions(input, settings)));
+    const std::uint32_t group = groupFor(device.info(), edges, settings, waves.mostPaths());
+    PFVOX_TRY(Buffers, buffers, createBuffers(device, input.emitters, edges, group));
+    const glm::vec2 coding = DepthCoder(input.depth).scaleAndLogRange();
+    shared::BakeWave wave{};
+    wave.scene = buffers.scene.addressWords();
+    wave.probes = buffers.probes.addressWords();
+    wave.texels = buffers.texels.addressWords();
+    wave.sums = buffers.sums.addressWords();
+    wave.tiles = buffers.tiles.addressWords();
+    wave.maps = buffers.maps.addressWords();
+    wave.depthEdge = edges.depth;
+    wave.lightEdge = edges.light;
+    wave.depthScale = coding.x;
+    wave.depthLogRange = coding.y;
+    waves.describe(wave);
+    PFVOX_CHECK(device.upload(buffers.wave, 0, gpu::bytesOf(wave)));
     PFVOX_CHECK(device.upload(buffers.scene, 0,
                               gpu::bytesOf(sceneRecord(scene, input, settings, buffers.emitters))));
-    ProbeTracer tracer(device, std::move(geometry), std::move(light), std::move(buffers));
+    ProbeTracer tracer(device, std::move(waves), std::move(programs), std::move(buffers));
     tracer.edges_ = edges;
-    tracer.samplesPerRun_ = samplesPerRun;
-    tracer.depth_ = input.depth;
+    tracer.groupSize_ = group;
     tracer.rules_ = {.minBatches = settings.minSamples / shared::kBatchSamples,
                      .maxBatches = settings.maxSamples / shared::kBatchSamples,
                      .noiseTarget = static_cast<double>(settings.noiseTarget),
                      .noiseFloor = static_cast<double>(settings.noiseFloor)};
-    tracer.dispatchSeconds_ = settings.dispatchSeconds;
+    tracer.submitSeconds_ = settings.dispatchSeconds;
     return tracer;
 }
 
-Result<std::vector<shared::SeenTexel>> ProbeTracer::see(const glm::vec3& position, const WorkDone& done) {
-    const glm::vec2 coding = DepthCoder(depth_).scaleAndLogRange();
-    const std::uint32_t texels = edges_.depth * edges_.depth;
-    shared::GeometryPush push{.scene = buffers_.scene.addressWords(),
-                              .texels = buffers_.texels.addressWords(),
-                              .probe = position,
-                              .edge = edges_.depth,
-                              .depthScale = coding.x,
-                              .depthLogRange = coding.y,
-                              .firstTexel = 0,
-                              .texelCount = 0,
-                              .counters = buffers_.counters.addressWords(),
-                              .reserved0 = {0, 0}};
-    for (std::uint32_t first = 0; first < texels; first += push.texelCount) {
-        push.firstTexel = first;
-        push.texelCount = std::min(texels - first, static_cast<std::uint32_t>(geometryPace_.size()) * shared::kBakeGroupSize);
-        const std::uint32_t groups = (push.texelCount + shared::kBakeGroupSize - 1) / shared::kBakeGroupSize;
-        const gpu::Dispatch dispatch{
-            .program = &geometry_, .pushConstants = gpu::bytesOf(push), .groups = {groups, 1, 1}};
-        const Stopwatch watch;
-        PFVOX_TRY(const double, gpuMs, device_->run({&dispatch, 1}));
-        geometryPace_.took(groups, watch.seconds(), dispatchSeconds_);
-        PFVOX_CHECK(done({.rays = push.texelCount, .gpuMs = gpuMs}));
-    }
-    std::vector<shared::SeenTexel> seen(texels);
-    PFVOX_CHECK(device_->download(buffers_.texels, 0, std::as_writable_bytes(std::span(seen))));
-    return seen;
-}
-
-Result<double> ProbeTracer::runBatches(std::span<const LightItem> items, const shared::LightPush& push,
-                                       std::vector<glm::vec4>& sums, std::uint64_t& rays) {
-    sums.assign(items.size() * shared::kTileTexels, glm::vec4(0.0f));
-    std::vector<glm::vec4> results(sums.size());
-    std::vector<glm::uvec2> starts(items.size());
-    const gpu::Dispatch dispatch{.program = &light_,
+Result<double> ProbeTracer::run(const gpu::Program& program, std::uint32_t first, std::uint32_t count,
+                                std::uint32_t perGroup) {
+    const shared::WavePush push{.wave = buffers_.wave.addressWords(),
+                                .first = first,
+                                .count = count,
+                                .set = 0,
+                                .reserved0 = 0,
+                                .reserved1 = 0,
+                                .reserved2 = 0};
+    const std::uint32_t groups = (count + perGroup - 1) / perGroup;
+    const gpu::Dispatch dispatch{.program = &program,
                                  .pushConstants = gpu::bytesOf(push),
-                                 .groups = {static_cast<std::uint32_t>(items.size()), 1, 1}};
-    double gpuMs = 0.0;
-    for (std::uint32_t first = 0; first < shared::kBatchSamples; first += samplesPerRun_) {
-        for (std::size_t i = 0; i < items.size(); ++i)
-            starts[i] = {items[i].tile, items[i].batch * shared::kBatchSamples + first};
-        PFVOX_CHECK(device_->upload(buffers_.items, 0, std::as_bytes(std::span(starts))));
-        PFVOX_TRY(const double, ms, device_->run({&dispatch, 1}));
-        gpuMs += ms;
-        PFVOX_CHECK(device_->download(buffers_.sums, 0, std::as_writable_bytes(std::span(results))));
-        for (std::size_t i = 0; i < results.size(); ++i) {
-            sums[i] += glm::vec4(glm::vec3(results[i]), 0.0f);
-            rays += std::bit_cast<std::uint32_t>(results[i].w);
-        }
-    }
-    return gpuMs;
+                                 .groups = {std::min(groups, shared::kBakeRowGroups),
+                                            (groups + shared::kBakeRowGroups - 1) / shared::kBakeRowGroups, 1}};
+    return device_->run({&dispatch, 1});
 }
 
-Result<void> ProbeTracer::runItems(std::span<const LightItem> items, const shared::LightPush& push, TileSums& sums,
-                                   const WorkDone& done) {
-    std::vector<glm::vec4> results;
-    for (std::size_t first = 0; first < items.size();) {
-        const auto part = items.subspan(first, std::min(items.size() - first, lightPace_.size()));
-        const Stopwatch watch;
-        std::uint64_t rays = 0;
-        PFVOX_TRY(const double, gpuMs, runBatches(part, push, results, rays));
-        const double runs = double{shared::kBatchSamples} / samplesPerRun_;
-        lightPace_.took(part.size(), watch.seconds() / runs, dispatchSeconds_);
-        for (std::size_t i = 0; i < part.size(); ++i)
-            sums.add(part[i], std::span(results).subspan(i * shared::kTileTexels, shared::kTileTexels));
-        PFVOX_CHECK(done({.rays = rays, .gpuMs = gpuMs}));
-        first += part.size();
+Result<void> ProbeTracer::see(std::span<const shared::BakeProbe> probes, const WorkDone& done) {
+    probeCount_ = static_cast<std::uint32_t>(probes.size());
+    finished_ = false;
+    PFVOX_CHECK(device_->upload(buffers_.probes, 0, std::as_bytes(probes)));
+    const std::uint32_t texels = probeCount_ * edges_.depth * edges_.depth;
+    for (std::uint32_t first = 0; first < texels;) {
+        const auto groups = static_cast<std::uint32_t>(geometryPace_.size());
+        const std::uint32_t count = std::min(texels - first, groups * shared::kBakeGroupSize);
+        const auto started = std::chrono::steady_clock::now();
+        PFVOX_TRY(const double, gpuMs, run(programs_.geometry, first, count, shared::kBakeGroupSize));
+        const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - started;
+        geometryPace_.took((count + shared::kBakeGroupSize - 1) / shared::kBakeGroupSize, seconds.count(), submitSeconds_);
+        PFVOX_CHECK(done({.rays = count, .gpuMs = gpuMs}));
+        first += count;
     }
+    PFVOX_TRY(std::vector<shared::TileStatistics>, judged, judgeTiles(programs_.resetTiles));
+    judged_ = std::move(judged);
     return {};
 }
 
-Result<TileSums> ProbeTracer::light(std::uint32_t probe, const glm::vec3& position,
-                                    std::span<const shared::SeenTexel> seen, const WorkDone& done) {
-    const std::uint32_t block = edges_.depth / edges_.light;
-    std::vector<bool> seesSurface(std::size_t{edges_.light} * edges_.light);
-    for (std::uint32_t y = 0; y < edges_.depth; ++y)
-        for (std::uint32_t x = 0; x < edges_.depth; ++x)
-            if (seen[x + std::size_t{edges_.depth} * y].metres >= 0.0f)
-                seesSurface[x / block + std::size_t{edges_.light} * (y / block)] = true;
-    TileSums sums(edges_.light, seesSurface, rules_);
-    const shared::LightPush push{.scene = buffers_.scene.addressWords(),
-                                 .texels = buffers_.texels.addressWords(),
-                                 .probe = position,
-                                 .depthEdge = edges_.depth,
-                                 .items = buffers_.items.addressWords(),
-                                 .sums = buffers_.sums.addressWords(),
-                                 .lightEdge = edges_.light,
-                                 .probeIndex = probe,
-                                 .counters = buffers_.counters.addressWords()};
-    for (auto items = sums.nextRound(); !items.empty(); items = sums.nextRound())
-        PFVOX_CHECK(runItems(items, push, sums, done));
-    return sums;
+Result<std::vector<shared::TileStatistics>> ProbeTracer::judgeTiles(const gpu::Program& program) {
+    const std::uint32_t tiles = probeCount_ * tilesPerProbe();
+    PFVOX_TRY(const double, gpuMs, run(program, 0, tiles, 1));
+    static_cast<void>(gpuMs);
+    std::vector<shared::TileStatistics> judged(tiles);
+    PFVOX_CHECK(device_->download(buffers_.tiles, 0, std::as_writable_bytes(std::span(judged))));
+    return judged;
+}
+
+Result<void> ProbeTracer::light(const WorkDone& done) {
+    for (;;) {
+        std::vector<TileWork> work;
+        for (std::uint32_t tile = 0; tile < judged_.size(); ++tile) {
+            const std::uint32_t more = moreBatches(judged_[tile], rules_);
+            if (more != 0) work.push_back({.tile = tile, .firstBatch = judged_[tile].batches, .batches = more});
+        }
+        if (work.empty()) break;
+        PFVOX_CHECK(waves_.trace(work, buffers_.wave.addressWords(), done));
+        PFVOX_TRY(std::vector<shared::TileStatistics>, judged, judgeTiles(programs_.tiles));
+        judged_ = std::move(judged);
+    }
+    const std::uint32_t texels = probeCount_ * edges_.light * edges_.light;
+    PFVOX_TRY(const double, gpuMs, run(programs_.finish, 0, texels, shared::kBakeGroupSize));
+    static_cast<void>(gpuMs);
+    finished_ = true;
+    return {};
+}
+
+Result<TracedProbe> ProbeTracer::collect(std::uint32_t probe) {
+    PFVOX_ASSERT(finished_ && probe < probeCount_);
+    TracedProbe traced;
+    traced.edges = edges_;
+    const std::size_t depth = std::size_t{edges_.depth} * edges_.depth;
+    const std::size_t light = std::size_t{edges_.light} * edges_.light;
+    std::uint64_t at = probe * mapWords(edges_) * sizeof(std::uint32_t);
+    PFVOX_CHECK(fill(*device_, buffers_.maps, at, depth, traced.words));
+    PFVOX_CHECK(fill(*device_, buffers_.maps, at, depth, traced.metres));
+    PFVOX_CHECK(fill(*device_, buffers_.maps, at, light, traced.light));
+    PFVOX_CHECK(fill(*device_, buffers_.maps, at, light, traced.errors));
+    PFVOX_CHECK(fill(*device_, buffers_.maps, at, light, traced.leaving));
+    const auto tiles = std::span<const shared::TileStatistics>(judged_).subspan(probe * tilesPerProbe(), tilesPerProbe());
+    traced.tiles = summaryOf(tiles, rules_);
+    return traced;
+}
+
+Result<std::vector<shared::SeenTexel>> ProbeTracer::seenTexels(std::uint32_t probe) {
+    PFVOX_ASSERT(probe < probeCount_);
+    const std::size_t texels = std::size_t{edges_.depth} * edges_.depth;
+    std::vector<shared::SeenTexel> seen(texels);
+    PFVOX_CHECK(device_->download(buffers_.texels, probe * texels * sizeof(shared::SeenTexel),
+                                  std::as_writable_bytes(std::span(seen))));
+    return seen;
 }
 
 Result<std::uint64_t> ProbeTracer::cappedRays() {
-    shared::BakeCounters counters{};
-    PFVOX_CHECK(device_->download(buffers_.counters, 0, std::as_writable_bytes(std::span(&counters, 1))));
-    return counters.cappedRays;
+    return waves_.cappedRays();
 }
 
 }  // namespace pfvox::bake

@@ -1,13 +1,12 @@
-// The device's part of a bake: what one probe sees, and the light there.
+// The device's part of a bake: what a group of probes sees, and the light there.
 #pragma once
 
-#include <functional>
-#include <pfvox/bake.hpp>
+#include <optional>
 #include <pfvox/gpu_scene.hpp>
-#include <vector>
 
 #include "bake/emitters.hpp"
-#include "bake/tile_sums.hpp"
+#include "bake/path_waves.hpp"
+#include "bake/tile_rounds.hpp"
 
 namespace pfvox::bake {
 
@@ -26,66 +25,75 @@ struct TracerInput {
     DepthEncoding depth;
 };
 
-/// After each piece of work: an error ends the bake.
-using WorkDone = std::function<Result<void>(const BakePass& pass)>;
+/// What was traced for one probe: texels row by row, `edges.depth` and `edges.light` along a row.
+struct TracedProbe {
+    TracedEdges edges;
+    std::vector<std::uint32_t> words;  ///< of ProbeLayer::DepthNormal
+    std::vector<float> metres;         ///< along the texel's direction, < 0 = nothing
+    std::vector<glm::vec3> light;      ///< I; 0 where no surface is seen
+    std::vector<float> errors;         ///< standard error of the mean channel of that
+    std::vector<glm::vec3> leaving;    ///< radiance towards the probe of Lambert surfaces, or the sky's
+    TileSummary tiles;
+};
 
 class ProbeTracer {
   public:
-    /// The scene must outlive the tracer.
+    /// The scene must outlive the tracer. Errors: GpuOutOfMemory (what is needed, and what to change).
     static Result<ProbeTracer> create(gpu::Device& device, const gpu::Scene& scene, const TracerInput& input,
                                       const BakeSettings& settings);
 
-    /// Texels of the traced depth map, row by row. They stay on the device for light().
-    Result<std::vector<shared::SeenTexel>> see(const glm::vec3& position, const WorkDone& done);
-    /// Indirect light at what the last see() saw. `probe`: index in the grid.
-    Result<TileSums> light(std::uint32_t probe, const glm::vec3& position,
-                           std::span<const shared::SeenTexel> seen, const WorkDone& done);
+    /// Probes that fit into one group.
+    std::uint32_t groupSize() const { return groupSize_; }
 
-    TracedEdges edges() const { return edges_; }
-    /// Rays that the traversal gave up since the tracer was made.
+    /// The group's maps: see(), then light(), then collect() for each of its probes. At most groupSize() probes.
+    Result<void> see(std::span<const shared::BakeProbe> probes, const WorkDone& done);
+    Result<void> light(const WorkDone& done);
+    Result<TracedProbe> collect(std::uint32_t probe);
+    /// Of a probe of the group, as the device has them.
+    Result<std::vector<shared::SeenTexel>> seenTexels(std::uint32_t probe);
+
+    /// Rays of paths that the traversal gave up since the tracer was made.
     Result<std::uint64_t> cappedRays();
 
   private:
+    struct Programs {
+        gpu::Program geometry;
+        gpu::Program resetTiles;
+        gpu::Program tiles;
+        gpu::Program finish;
+    };
     struct Buffers {
         gpu::Buffer scene;     ///< shared::BakeScene
         gpu::Buffer emitters;
+        gpu::Buffer wave;      ///< shared::BakeWave
+        gpu::Buffer probes;
         gpu::Buffer texels;    ///< shared::SeenTexel
-        gpu::Buffer items;
         gpu::Buffer sums;
-        gpu::Buffer counters;
+        gpu::Buffer tiles;
+        gpu::Buffer maps;
     };
-    ProbeTracer(gpu::Device& device, gpu::Program geometry, gpu::Program light, Buffers buffers)
-        : device_(&device), geometry_(std::move(geometry)), light_(std::move(light)), buffers_(std::move(buffers)) {}
-    static Result<Buffers> createBuffers(gpu::Device& device, const TracerInput& input, const TracedEdges& edges);
-    /// Sums of kBatchSamples paths for each texel of each item; the milliseconds that the device took.
-    Result<double> runBatches(std::span<const LightItem> items, const shared::LightPush& push,
-                              std::vector<glm::vec4>& sums, std::uint64_t& rays);
-    Result<void> runItems(std::span<const LightItem> items, const shared::LightPush& push, TileSums& sums,
-                          const WorkDone& done);
-
-    /// How much work fits into one dispatch, learnt from those before.
-    class Pace {
-      public:
-        explicit Pace(std::size_t most) : most_(most) {}
-        std::size_t size() const { return size_; }
-        void took(std::size_t size, double seconds, double target);
-
-      private:
-        std::size_t size_ = 32;
-        std::size_t most_;
-    };
+    ProbeTracer(gpu::Device& device, PathWaves waves, Programs programs, Buffers buffers)
+        : device_(&device), waves_(std::move(waves)), programs_(std::move(programs)), buffers_(std::move(buffers)) {}
+    static Result<Programs> createPrograms(gpu::Device& device, bool hasGlass);
+    static Result<Buffers> createBuffers(gpu::Device& device, const EmitterList& emitters, const TracedEdges& edges,
+                                         std::uint32_t probes);
+    Result<double> run(const gpu::Program& program, std::uint32_t first, std::uint32_t count, std::uint32_t perGroup);
+    std::uint32_t tilesPerProbe() const { return edges_.light * edges_.light / shared::kTileTexels; }
+    /// Noise of all tiles of the group, after `program` has judged them.
+    Result<std::vector<shared::TileStatistics>> judgeTiles(const gpu::Program& program);
 
     gpu::Device* device_;
-    gpu::Program geometry_;
-    gpu::Program light_;
+    PathWaves waves_;
+    Programs programs_;
     Buffers buffers_;
     TracedEdges edges_;
-    std::uint32_t samplesPerRun_ = shared::kBatchSamples;
-    DepthEncoding depth_;
     TileRules rules_;
-    double dispatchSeconds_ = 0.25;
-    Pace geometryPace_{std::size_t{1} << 15};  ///< in workgroups
-    Pace lightPace_{4096};
+    double submitSeconds_ = 0.25;
+    std::uint32_t groupSize_ = 1;
+    std::uint32_t probeCount_ = 0;  ///< of the group
+    bool finished_ = false;         ///< its maps are there
+    std::vector<shared::TileStatistics> judged_;
+    Pace geometryPace_{std::size_t{1} << 11, std::size_t{1} << 18};  ///< in workgroups
 };
 
 }  // namespace pfvox::bake

@@ -155,15 +155,23 @@ Result<double> Device::run(std::span<const Dispatch> dispatches) {
                 commands.pushConstants<std::byte>(*program.layout, vk::ShaderStageFlagBits::eCompute, 0,
                                                   {static_cast<std::uint32_t>(dispatch.pushConstants.size()),
                                                    dispatch.pushConstants.data()});
-                commands.dispatch(dispatch.groups.x, dispatch.groups.y, dispatch.groups.z);
+                if (dispatch.groupsFrom != nullptr) {
+                    PFVOX_ASSERT(dispatch.groupsAtBytes % 4 == 0);
+                    PFVOX_ASSERT(dispatch.groupsAtBytes + 12 <= dispatch.groupsFrom->sizeBytes());
+                    commands.dispatchIndirect(*dispatch.groupsFrom->state_->allocation.buffer, dispatch.groupsAtBytes);
+                } else {
+                    commands.dispatch(dispatch.groups.x, dispatch.groups.y, dispatch.groups.z);
+                }
                 const vk::MemoryBarrier written{
                     .srcAccessMask = vk::AccessFlagBits::eShaderWrite,
                     .dstAccessMask = vk::AccessFlagBits::eShaderRead | vk::AccessFlagBits::eShaderWrite |
+                                     vk::AccessFlagBits::eIndirectCommandRead |
                                      vk::AccessFlagBits::eTransferRead | vk::AccessFlagBits::eTransferWrite};
-                commands.pipelineBarrier(
-                    vk::PipelineStageFlagBits::eComputeShader,
-                    vk::PipelineStageFlagBits::eComputeShader | vk::PipelineStageFlagBits::eTransfer, {},
-                    written, nullptr, nullptr);
+                commands.pipelineBarrier(vk::PipelineStageFlagBits::eComputeShader,
+                                         vk::PipelineStageFlagBits::eComputeShader |
+                                             vk::PipelineStageFlagBits::eDrawIndirect |
+                                             vk::PipelineStageFlagBits::eTransfer,
+                                         {}, written, nullptr, nullptr);
             }
         });
     });

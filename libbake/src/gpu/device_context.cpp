@@ -115,7 +115,8 @@ Allocation DeviceContext::allocate(std::uint64_t sizeBytes, MemoryKind kind) {
     vk::BufferUsageFlags usage =
         vk::BufferUsageFlagBits::eTransferSrc | vk::BufferUsageFlagBits::eTransferDst;
     if (kind == MemoryKind::Device) {
-        usage |= vk::BufferUsageFlagBits::eStorageBuffer | vk::BufferUsageFlagBits::eShaderDeviceAddress;
+        usage |= vk::BufferUsageFlagBits::eStorageBuffer | vk::BufferUsageFlagBits::eShaderDeviceAddress |
+                 vk::BufferUsageFlagBits::eIndirectBuffer;
     }
     made.buffer = vk::raii::Buffer(device_, {.size = made.sizeBytes, .usage = usage});
     const vk::MemoryRequirements needs = made.buffer.getMemoryRequirements();

@@ -1,0 +1,109 @@
+// Paths of a wave: their random numbers, emitters as light sources, and the queues that their rays wait in.
+#ifndef PFVOX_BAKE_PATHS_GLSL
+#define PFVOX_BAKE_PATHS_GLSL
+
+#extension GL_KHR_shader_subgroup_basic : require
+#extension GL_KHR_shader_subgroup_ballot : require
+
+#include "shared/sampling.glsl.h"
+#include "bake_wave.glsl"
+
+// Pairs of random numbers that a vertex has.
+const uint kPairDirection = 0u;
+const uint kPairEmitterPoint = 1u;
+const uint kPairEmitterAndLobe = 2u;  // which emitter, which lobe
+const uint kPairGlass = 3u;           // reflected or not, through or not
+const uint kPairRoulette = 4u;
+const uint kPairsPerVertex = 5u;
+const uint kStratifiedVertices = 2u;
+
+vec2 randomPair(uint key, uint vertex, uint pair, uint index) {
+    uint pairKey = joinHash(key, vertex * kPairsPerVertex + pair);
+    return vertex < kStratifiedVertices ? sobolPair(pairKey, index) : hashPair(pairKey, index);
+}
+
+// --- Emitters ---
+
+bool looksForEmitters(BakeScene bake) { return bake.emitterCount != 0u && bake.sampling != kSampleDirections; }
+
+float emitterWeight(float density, float otherDensity) { return density / (density + otherDensity); }
+
+EmitterFace pickEmitter(BakeScene bake, float u) {
+    float scaled = u * float(bake.emitterCount);
+    uint slot = min(uint(scaled), bake.emitterCount - 1u);
+    EmitterFace face = Emitters(bake.emitters).at[slot];
+    if (scaled - float(slot) < face.threshold) return face;
+    return Emitters(bake.emitters).at[face.alias];
+}
+
+// Where light is looked for: `toLight` unit, `radiance` 0 where nothing comes.
+struct EmitterSample {
+    vec3 toLight;
+    float density;  // per steradian
+    vec3 radiance;
+    vec3 end;       // of the shadow ray
+};
+
+EmitterSample sampleEmitter(BakeScene bake, vec3 origin, float pick, vec2 u) {
+    EmitterFace face = pickEmitter(bake, pick);
+    vec3 outward = cross(face.edgeU, face.edgeV);
+    float area = length(outward);
+    outward /= area;
+    vec3 point = face.corner + u.x * face.edgeU + u.y * face.edgeV;
+    vec3 away = point - origin;
+    float squared = dot(away, away);
+    EmitterSample found;
+    found.toLight = away * inversesqrt(max(squared, 1e-30));
+    float cosine = -dot(outward, found.toLight);
+    found.radiance = cosine > 0.0 && squared > 0.0 ? face.radiance : vec3(0.0);
+    found.density = meanOf(face.radiance) / bake.emitterPower * squared / max(cosine, 1e-12);
+    found.end = point + face.offset * outward;
+    return found;
+}
+
+// Density with which sampleEmitter finds the emitter that a path has run into.
+float densityOfEmitter(BakeScene bake, vec3 emission, float metres, float cosine) {
+    return meanOf(emission) / bake.emitterPower * metres * metres / max(cosine, 1e-12);
+}
+
+// The ray to one emitter, with its light as the lobes reflect it; light 0 where there is none.
+ShadowRay towardsEmitter(BakeScene bake, Lobes lobes, vec3 origin, vec3 normal, vec3 toViewer, float pick, vec2 u) {
+    ShadowRay ray = ShadowRay(origin, 0.0, normal, 0u, vec3(0.0), 0.0);
+    EmitterSample found = sampleEmitter(bake, origin, pick, u);
+    if (maxOf(found.radiance) <= 0.0) return ray;
+    Scattering s = evaluateLobes(lobes, normal, toViewer, found.toLight);
+    if (maxOf(s.value) <= 0.0) return ray;
+    vec3 way = found.end - origin;
+    ray.metres = length(way);
+    ray.direction = way / ray.metres;
+    float weight = bake.sampling == kSampleCombined ? emitterWeight(found.density, s.density) : 1.0;
+    ray.light = found.radiance * s.value * (weight / found.density);
+    return ray;
+}
+
+// --- Queues ---
+
+// A place in a queue for each invocation that wants one: one atomic addition a subgroup.
+uint placeInQueue(BakeWave wave, uint set, uint queue, bool wanted) {
+    uvec4 all = subgroupBallot(wanted);
+    uint first = 0u;
+    if (subgroupElect()) {
+        uint count = subgroupBallotBitCount(all);
+        if (count != 0u) first = atomicAdd(Controls(wave.control).control.waiting[set * kQueueKinds + queue], count);
+    }
+    return subgroupBroadcastFirst(first) + subgroupBallotExclusiveBitCount(all);
+}
+
+void queueRay(BakeWave wave, uint set, bool wanted, uint path) {
+    uint place = placeInQueue(wave, set, kQueueRays, wanted);
+    if (wanted) Numbers(wave.rays[set]).at[place] = path;
+}
+
+// Those whose light is not 0; `queue` is kQueueSun or kQueueEmitters.
+void queueShadowRay(BakeWave wave, uint set, uint queue, ShadowRay ray) {
+    bool wanted = maxOf(ray.light) > 0.0;
+    uint place = placeInQueue(wave, set, queue, wanted);
+    if (wanted) ShadowRays(wave.shadowRays[queue - kQueueSun]).at[place] = ray;
+}
+
+#endif
