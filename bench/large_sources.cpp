@@ -1,6 +1,7 @@
 #include "large_sources.hpp"
 
 #include <algorithm>
+#include <fstream>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,8 @@ namespace pfvox::bench {
 namespace {
 
 constexpr int kModelEdge = 256;
+constexpr int kTerrainEdge = 2048;
+constexpr float kTerrainAmplitude = 120.0f;
 
 std::uint8_t colorAt(int x, int y, int z) {
     return static_cast<std::uint8_t>(1 + 4 * (hashOf(x >> 6, y >> 6, 0) % 16) + hashOf(x, y, z) % 4);
@@ -115,13 +118,46 @@ std::string numbered(const std::string& name, int i) {
 }  // namespace
 
 void writeTerrainShell(const std::filesystem::path& file) {
-    constexpr int kEdge = 2048;
     constexpr int kThickness = 6;
-    const HeightMap heights(kEdge, 120.0f);
-    writeLandscape(file, kEdge, kModelEdge, [&](int x, int y) {
+    const HeightMap heights(kTerrainEdge, kTerrainAmplitude);
+    writeLandscape(file, kTerrainEdge, kModelEdge, [&](int x, int y) {
         const int top = std::min(heights.at(x, y) + kThickness, kModelEdge);
         return Column{top - kThickness, top};
     });
+}
+
+void writeValley(const std::filesystem::path& file) {
+    constexpr float kMetres = 0.1f;
+    constexpr int kModels = 35;
+    constexpr int kRow = 7;
+    constexpr float kStep = 9.0f;
+    const HeightMap heights(kTerrainEdge, kTerrainAmplitude);
+    const auto groundAt = [&](float x, float z) {
+        const auto cell = [](float metres) { return std::clamp(static_cast<int>(metres / kMetres), 0, kTerrainEdge - 1); };
+        return kMetres * static_cast<float>(heights.at(cell(x), cell(-z)) + 6);
+    };
+    const float middle = 0.5f * kMetres * kTerrainEdge;
+    const float ground = groundAt(middle, -middle);
+    std::ofstream out(file);
+    out << "probeGridPos = [" << middle - 28.0f << ", " << ground - 6.0f << ", " << -middle - 28.0f << "]\n"
+        << "probeGridStep = [8.0, 2.5, 8.0]\nprobeGridCount = [8, 8, 8]\nproximityGridSize = [64, 32, 64]\n\n"
+        << "[sun]\ndirection = [0.5, -0.8, -0.45]\nirradiance = [3.0, 2.8, 2.4]\n\n"
+        << "[sky]\nzenith = [0.35, 0.55, 0.95]\nhorizon = [0.85, 0.92, 1.0]\nground = [0.30, 0.27, 0.24]\n\n"
+        << "[[cameras]]\nname = \"valley\"\nposition = [" << middle - 30.0f << ", " << ground + 16.0f << ", "
+        << -middle + 42.0f << "]\ntarget = [" << middle << ", " << ground + 2.0f << ", " << -middle
+        << "]\nfovYDegrees = 55.0\n\n"
+        << "[[cameras]]\nname = \"among\"\nposition = [" << middle - 12.0f << ", "
+        << groundAt(middle - 12.0f, -middle + 13.0f) + 4.0f << ", " << -middle + 13.0f << "]\ntarget = [" << middle << ", "
+        << ground + 2.5f << ", " << -middle - 4.0f << "]\nfovYDegrees = 65.0\n\n"
+        << "[[models]]\nname = \"terrain\"\npath = \"terrain_shell.vox\"\n";
+    const char* const names[] = {"courtyard", "tree", "statue", "tree", "lamp", "tree", "tree"};
+    for (int i = 0; i < kModels; ++i) {
+        const float x = middle + kStep * static_cast<float>(i % kRow - kRow / 2);
+        const float z = -middle + kStep * static_cast<float>(i / kRow - 2);
+        const char* const name = names[(i + i / kRow) % 7];
+        out << "\n[[models]]\nname = \"" << name << ' ' << i << "\"\npath = \"" << name << ".vox\"\ntranslateVec = [" << x
+            << ", " << groundAt(x, z) << ", " << z << "]\nrotateVec = [0.0, " << 0.37f * static_cast<float>(i) << ", 0.0]\n";
+    }
 }
 
 void writeSolidTerrain(const std::filesystem::path& file) {

@@ -61,35 +61,107 @@ TEST_F(ProbeBakeScene, ShardsMergeToTheWhole) {
     EXPECT_EQ(run(tiny({"scene.toml", "-o", "a.pf_probe", "--probes", "7"})).exitCode, 2);
 }
 
-TEST_F(ProbeBakeScene, CtrlCLeavesWhatResumeTakes) {
-    writeScene("scene.toml", "box.pf_vox", kGrid);
-    const std::vector<std::string> arguments{PFVOX_PROBE_BAKE, "scene.toml",   "-o",        "out.pf_probe", "--resolution",
-                                             "64,32,4,6",      "--samples",    "1024"};
-    ProcessSetup setup{.environment = {}, .input = {}, .folder = folder.path()};
-    Process process(arguments, setup);
-    const std::filesystem::path journal = folder / "out.pf_probe.journal";
-    // The head of the journal comes first; what it grows by are probes.
-    std::uintmax_t headBytes = 0;
-    for (int i = 0; i < 3000; ++i) {
-        std::error_code absent;
-        const auto bytes = std::filesystem::file_size(journal, absent);
-        if (!absent && headBytes == 0) headBytes = bytes;
-        if (!absent && headBytes != 0 && bytes > headBytes) break;
-        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+/// A bake that takes some seconds, stopped by `signal` when its journal holds a probe.
+class StoppedBake : public ProbeBakeScene {
+  protected:
+    ProcessResult stopBy(int signal) {
+        writeScene("scene.toml", "box.pf_vox", kGrid);
+        ProcessSetup setup{.environment = {}, .input = {}, .folder = folder.path()};
+        std::vector<std::string> command{PFVOX_PROBE_BAKE};
+        command.insert(command.end(), arguments.begin(), arguments.end());
+        Process process(command, setup);
+        // The head of the journal comes first; what it grows by are probes.
+        std::uintmax_t headBytes = 0;
+        for (int i = 0; i < 3000; ++i) {
+            std::error_code absent;
+            const auto bytes = std::filesystem::file_size(journal(), absent);
+            if (!absent && headBytes == 0) headBytes = bytes;
+            if (!absent && headBytes != 0 && bytes > headBytes) break;
+            std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        }
+        process.send(signal);
+        return process.finish();
     }
-    process.send(SIGINT);
-    const ProcessResult stopped = process.finish();
+    ProcessResult resume() {
+        std::vector<std::string> again = arguments;
+        again.insert(again.end(), {"--resume", "--json"});
+        return run(again);
+    }
+    void expectWholeBake() {
+        std::vector<std::string> whole = arguments;
+        std::ranges::replace(whole, std::string("out.pf_probe"), std::string("whole.pf_probe"));
+        ASSERT_EQ(run(whole).exitCode, 0);
+        EXPECT_EQ(readText(folder / "out.pf_probe"), readText(folder / "whole.pf_probe"));
+    }
+    std::filesystem::path journal() const { return folder / "out.pf_probe.journal"; }
+
+    std::vector<std::string> arguments{"scene.toml", "-o", "out.pf_probe", "--resolution", "64,32,4,6", "--samples", "512"};
+};
+
+TEST_F(StoppedBake, CtrlCLeavesWhatResumeTakes) {
+    const ProcessResult stopped = stopBy(SIGINT);
     ASSERT_EQ(stopped.exitCode, 130) << stopped.err;
     EXPECT_THAT(stopped.err, HasSubstr("--resume"));
     EXPECT_FALSE(std::filesystem::exists(folder / "out.pf_probe"));
-    ASSERT_TRUE(std::filesystem::exists(journal));
+    ASSERT_TRUE(std::filesystem::exists(journal()));
 
-    std::vector<std::string> resume(arguments.begin() + 1, arguments.end());
-    resume.insert(resume.end(), {"--resume", "--json"});
-    const ProcessResult resumed = run(resume);
+    const ProcessResult resumed = resume();
     ASSERT_EQ(resumed.exitCode, 0) << resumed.err;
     EXPECT_GT(json::parse(resumed.out)["reused"], 0);
-    EXPECT_FALSE(std::filesystem::exists(journal));
+    EXPECT_FALSE(std::filesystem::exists(journal()));
+}
+
+TEST_F(StoppedBake, AKilledBakeResumesToTheSameBytes) {
+    EXPECT_NE(stopBy(SIGKILL).exitCode, 0);
+    EXPECT_FALSE(std::filesystem::exists(folder / "out.pf_probe"));
+    const ProcessResult resumed = resume();
+    ASSERT_EQ(resumed.exitCode, 0) << resumed.err;
+    EXPECT_GT(json::parse(resumed.out)["reused"], 0);
+    expectWholeBake();
+}
+
+TEST_F(StoppedBake, OfADamagedJournalOnlyWhatIsWholeIsTaken) {
+    EXPECT_NE(stopBy(SIGKILL).exitCode, 0);
+    std::string bytes = readText(journal());
+    bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 0x40);
+    writeText(journal(), bytes);
+    const ProcessResult resumed = resume();
+    ASSERT_EQ(resumed.exitCode, 0) << resumed.err;
+    EXPECT_THAT(resumed.err, HasSubstr("journal"));
+    expectWholeBake();
+}
+
+TEST_F(StoppedBake, AForeignJournalIsNotTaken) {
+    writeScene("scene.toml", "box.pf_vox", kGrid);
+    writeText(journal(), "these are not probes, and nobody said they were; " + std::string(4096, 'x'));
+    const ProcessResult resumed = resume();
+    ASSERT_EQ(resumed.exitCode, 0) << resumed.err;
+    EXPECT_THAT(resumed.err, HasSubstr("journal"));
+    EXPECT_EQ(json::parse(resumed.out)["reused"], 0);
+}
+
+TEST_F(ProbeBakeScene, AFullDiskLosesNothing) {
+    writeScene("scene.toml", "box.pf_vox", kGrid);
+    ASSERT_EQ(run(tiny({"scene.toml", "-o", "out.pf_probe"})).exitCode, 0);
+    const std::string before = readText(folder / "out.pf_probe");
+    // No file may grow beyond 8 blocks of 512 bytes; the write fails as it does on a full disk.
+    const std::string command = "trap '' XFSZ; ulimit -f 8; exec " PFVOX_PROBE_BAKE
+                                " scene.toml -o out.pf_probe --resolution 64,32,4,6 --samples 32";
+    const ProcessSetup setup{.environment = {}, .input = {}, .folder = folder.path()};
+    const ProcessResult full = Process({"/bin/sh", "-c", command}, setup).finish();
+    EXPECT_EQ(full.exitCode, 3) << full.err;
+    EXPECT_THAT(full.err, HasSubstr("out.pf_probe"));
+    EXPECT_EQ(readText(folder / "out.pf_probe"), before);
+}
+
+TEST_F(ProbeBakeScene, TooLittleDeviceMemoryIsNamed) {
+    writeScene("scene.toml", "box.pf_vox", kGrid);
+    const ProcessResult scarce = run({"scene.toml", "-o", "out.pf_probe", "--profile", "thesis", "--device-memory", "64"});
+    EXPECT_EQ(scarce.exitCode, 6);
+    EXPECT_THAT(scarce.err, HasSubstr("MiB of device memory"));
+    EXPECT_THAT(scarce.err, HasSubstr("--profile"));
+    EXPECT_FALSE(std::filesystem::exists(folder / "out.pf_probe"));
+    EXPECT_EQ(run(tiny({"scene.toml", "-o", "out.pf_probe", "--device-memory", "256"})).exitCode, 0);
 }
 
 TEST_F(ProbeBakeScene, MistakesAreNamed) {

@@ -171,7 +171,7 @@ class BakeRun {
         const std::size_t warnings = Reporter::warningCount(diagnostics.entries());
         if (options_.warningsAsErrors && warnings != 0)
             return fail(ErrorCode::BadValue, plural(warnings, "warning") + ", taken as errors: nothing baked");
-        PFVOX_TRY(gpu::Device, device, gpu::Device::open({.selector = options_.device}));
+        PFVOX_TRY(gpu::Device, device, gpu::Device::open({.selector = options_.device, .memoryBytes = options_.deviceMemoryMiB << 20}));
         outcome_.device = device.info().name;
         const Existing existing = inspect(options_, limits_);
         outcome_.reason = reasonFor(options_, existing, bakeContentKey(scene, *settings, device.info()));

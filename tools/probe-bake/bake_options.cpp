@@ -79,6 +79,11 @@ void addLightOptions(CLI::App& command, BakeOptions& options) {
 
 void addRunOptions(CLI::App& command, BakeOptions& options) {
     addDeviceOption(command, options.device);
+    command
+        .add_option("--device-memory", options.deviceMemoryMiB, "device memory to take at most (default: what there is)")
+        ->option_text("MIB")
+        ->check(numberFrom(1, 1 << 24))
+        ->group(kBaking);
     command.add_flag("--list-devices", options.listDevices, "print the devices and do nothing")->group(kBaking);
     command.add_option("--probes", options.probes, "bake probes A to B - 1 only: a shard for `probe-bake merge`")
         ->option_text("A:B")

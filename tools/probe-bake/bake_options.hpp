@@ -23,6 +23,7 @@ struct BakeOptions {
     std::uint64_t seed = 0;
     std::string probes;
     std::string device;
+    std::uint64_t deviceMemoryMiB = 0;
     std::string depfile;
     bool listDevices = false;
     bool resume = false;

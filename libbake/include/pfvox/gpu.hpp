@@ -48,7 +48,7 @@ struct DeviceInfo {
     std::string driver;  ///< driver name and version, as the driver spells them
     std::uint32_t apiVersionMajor = 0;
     std::uint32_t apiVersionMinor = 0;
-    std::uint64_t localMemoryBytes = 0;  ///< largest device-local heap
+    std::uint64_t localMemoryBytes = 0;  ///< largest device-local heap, or DeviceOptions::memoryBytes if that is less
     std::string missing;                 ///< what pfvox needs and the device lacks; empty = usable
     bool usable() const { return missing.empty(); }
 };
@@ -61,6 +61,8 @@ struct DeviceOptions {
     /// Empty: the first usable device, real ones before software. A number: the index in listDevices(). Else:
     /// a part of the name, whatever its case.
     std::string selector;
+    /// The most device and staging memory to take, for cards that others use too; 0 = what there is.
+    std::uint64_t memoryBytes = 0;
     /// Turns VK_LAYER_KHRONOS_validation on; its messages are collected, see Device::validationMessages().
     bool validation = false;
     /// Further extensions for whoever shares the device (pfvox/gpu_native.hpp). A device without them is not usable.

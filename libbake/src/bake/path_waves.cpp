@@ -12,17 +12,10 @@ namespace {
 // Enough to fill the largest devices; those that find nothing to do end at once.
 constexpr std::uint32_t kPersistentGroups = 4096;
 constexpr std::uint32_t kStepsPerSubmit = 12;
-constexpr std::uint64_t kSoftwareItems = 64;
 constexpr std::uint64_t kFirstItems = 512;
 constexpr std::uint64_t kMostItems = 16384;
 constexpr std::uint64_t kBytesPerPath = sizeof(shared::PathState) + sizeof(glm::vec4) + sizeof(shared::PathHit) +
                                         2 * sizeof(shared::ShadowRay) + 2 * sizeof(std::uint32_t);
-
-/// An eighth of the device's memory at most.
-std::uint64_t itemsFor(const gpu::DeviceInfo& device) {
-    if (device.kind == gpu::DeviceKind::Software) return kSoftwareItems;
-    return std::clamp(device.localMemoryBytes / 8 / (kBytesPerPath * shared::kItemPaths), kSoftwareItems, kMostItems);
-}
 
 double secondsSince(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -127,8 +120,13 @@ Result<PathWaves::Buffers> PathWaves::createBuffers(gpu::Device& device, std::ui
                    std::move(control)};
 }
 
-Result<PathWaves> PathWaves::create(gpu::Device& device, const WaveOptions& options) {
-    const std::uint64_t items = itemsFor(device.info());
+/// An eighth of the device's memory at most.
+std::uint64_t PathWaves::itemsFor(const gpu::DeviceInfo& device) {
+    if (device.kind == gpu::DeviceKind::Software) return kLeastItems;
+    return std::clamp(device.localMemoryBytes / 8 / (kBytesPerPath * shared::kItemPaths), kLeastItems, kMostItems);
+}
+
+Result<PathWaves> PathWaves::create(gpu::Device& device, const WaveOptions& options, std::uint64_t items) {
     PFVOX_TRY(Programs, programs, createPrograms(device, options));
     PFVOX_TRY(Buffers, buffers, createBuffers(device, items));
     return PathWaves(device, options, std::move(programs), std::move(buffers), items);

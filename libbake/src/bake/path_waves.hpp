@@ -47,7 +47,11 @@ struct WaveOptions {
 
 class PathWaves {
   public:
-    static Result<PathWaves> create(gpu::Device& device, const WaveOptions& options);
+    /// `items`: kItemPaths paths each, traced at a time.
+    static Result<PathWaves> create(gpu::Device& device, const WaveOptions& options, std::uint64_t items);
+    static constexpr std::uint64_t kLeastItems = 64;
+    /// As many as do this device good.
+    static std::uint64_t itemsFor(const gpu::DeviceInfo& device);
 
     /// Where the paths lie; all but these members of `wave` are the caller's.
     void describe(shared::BakeWave& wave) const;

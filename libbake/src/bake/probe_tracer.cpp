@@ -14,6 +14,7 @@ namespace pfvox::bake {
 namespace {
 
 constexpr std::uint64_t kMostGroup = 64;
+constexpr std::uint64_t kMostSoftwareGroup = 4;
 /// Probes of a group bring this many waves of paths, so that what is done once a group does not count.
 constexpr std::uint64_t kWavesPerGroup = 8;
 
@@ -27,18 +28,18 @@ std::uint64_t bytesPerProbe(const TracedEdges& edges) {
            light / shared::kTileTexels * sizeof(shared::TileStatistics) + mapWords(edges) * sizeof(std::uint32_t);
 }
 
-/// Enough for full waves, in an eighth of the device's memory; a software device has one wave's worth, so that a kill
-/// loses little.
+/// Enough for full waves, in an eighth of the device's memory; few on a software device, so that a kill loses little.
 std::uint32_t groupFor(const gpu::DeviceInfo& device, const TracedEdges& edges, const BakeSettings& settings,
                        std::uint64_t wavePaths) {
     const bool software = device.kind == gpu::DeviceKind::Software;
     const std::uint64_t paths = std::uint64_t{edges.light} * edges.light * settings.minSamples;
     const std::uint64_t wanted = (software ? 1 : kWavesPerGroup) * wavePaths / paths;
-    const std::uint64_t memory = software ? std::uint64_t{256} << 20 : device.localMemoryBytes / 8;
+    const std::uint64_t memory = std::min(software ? std::uint64_t{256} << 20 : ~std::uint64_t{0}, device.localMemoryBytes / 8);
     // Indices of texels and of words of maps have 32 bits.
     const std::uint64_t addressable = 0xffffffffull / mapWords(edges);
     const std::uint64_t fitting = std::min(memory / bytesPerProbe(edges), addressable);
-    return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(std::min(wanted, fitting), 1, kMostGroup));
+    return static_cast<std::uint32_t>(
+        std::clamp<std::uint64_t>(std::min(wanted, fitting), 1, software ? kMostSoftwareGroup : kMostGroup));
 }
 
 shared::BakeScene sceneRecord(const gpu::Scene& scene, const TracerInput& input, const BakeSettings& settings,
@@ -126,9 +127,29 @@ Result<ProbeTracer::Buffers> ProbeTracer::createBuffers(gpu::Device& device, con
 
 Result<ProbeTracer> ProbeTracer::create(gpu::Device& device, const gpu::Scene& scene, const TracerInput& input,
                                         const BakeSettings& settings) {
+    std::uint64_t items = PathWaves::itemsFor(device.info());
+    for (;;) {
+        auto tracer = createFor(device, scene, input, settings, items);
+        if (tracer || tracer.error().code != ErrorCode::GpuOutOfMemory) return tracer;
+        if (items > PathWaves::kLeastItems) {  // others may have taken the memory: smaller pieces give the same light
+            items = std::max(items / 4, PathWaves::kLeastItems);
+            continue;
+        }
+        const std::uint64_t needed = bytesPerProbe(tracedEdges(settings.resolution)) +
+                                     PathWaves::bytesFor(items * shared::kItemPaths) +
+                                     input.emitters.faces.size() * sizeof(shared::EmitterFace);
+        tracer.error().message += fmt::format(
+            "; beside {} MiB of the scene the bake needs {} MiB of device memory: choose a smaller --profile or --resolution",
+            device.memory().currentBytes >> 20, (needed >> 20) + 1);
+        return tracer;
+    }
+}
+
+Result<ProbeTracer> ProbeTracer::createFor(gpu::Device& device, const gpu::Scene& scene, const TracerInput& input,
+                                           const BakeSettings& settings, std::uint64_t items) {
     const TracedEdges edges = tracedEdges(settings.resolution);
     PFVOX_TRY(Programs, programs, createPrograms(device, input.hasGlass));
-    PFVOX_TRY(PathWaves, waves, PathWaves::create(device, waveOptions(input, settings)));
+    PFVOX_TRY(PathWaves, waves, PathWaves::create(device, waveOptions(input, settings), items));
     const std::uint32_t group = groupFor(device.info(), edges, settings, waves.mostPaths());
     PFVOX_TRY(Buffers, buffers, createBuffers(device, input.emitters, edges, group));
     const glm::vec2 coding = DepthCoder(input.depth).scaleAndLogRange();

@@ -74,6 +74,8 @@ class ProbeTracer {
     };
     ProbeTracer(gpu::Device& device, PathWaves waves, Programs programs, Buffers buffers)
         : device_(&device), waves_(std::move(waves)), programs_(std::move(programs)), buffers_(std::move(buffers)) {}
+    static Result<ProbeTracer> createFor(gpu::Device& device, const gpu::Scene& scene, const TracerInput& input,
+                                         const BakeSettings& settings, std::uint64_t items);
     static Result<Programs> createPrograms(gpu::Device& device, bool hasGlass);
     static Result<Buffers> createBuffers(gpu::Device& device, const EmitterList& emitters, const TracedEdges& edges,
                                          std::uint32_t probes);

@@ -1,28 +1,47 @@
 #include "bake/surface_samples.hpp"
 
+#include <tbb/parallel_for.h>
+
+#include <numeric>
+
 #include "bake/exposed_faces.hpp"
 
 namespace pfvox::bake {
 
 namespace {
 
-/// Calls `visit` with each sample in the box.
-template <class Visit>
-void forEachSample(std::span<const PlacedModel> models, const ProximityGrid& shape, const Visit& visit) {
-    const glm::dvec3 low(shape.start);
-    const glm::dvec3 high = low + glm::dvec3(shape.step) * glm::dvec3(shape.counts);
-    for (const PlacedModel& placed : models) {
-        const std::vector<bool> all(placed.asset->materials.size(), true);
-        const glm::dmat3 normals = glm::transpose(glm::dmat3(placed.modelFromWorld));
-        forEachExposedFace(*placed.model, {.wanted = all, .hides = all}, [&](const VoxelFace& face) {
-            glm::dvec3 middle = glm::dvec3(face.voxel) + 0.5;
-            middle[face.axis()] += face.isUpper() ? 0.5 : -0.5;
-            const glm::dvec3 position = placed.worldFromModel * glm::dvec4(middle, 1.0);
-            if (glm::any(glm::lessThan(position, low)) || glm::any(glm::greaterThan(position, high))) return;
-            const glm::dvec3 outward = (face.isUpper() ? 1.0 : -1.0) * normals[face.axis()];
-            visit(SurfaceSample{.position = glm::vec3(position), .normal = glm::vec3(glm::normalize(outward))});
-        });
+struct WorldBox {
+    glm::dvec3 min;
+    glm::dvec3 max;
+};
+
+bool meets(const PlacedModel& placed, const WorldBox& box) {
+    for (const OctreeRegion& region : placed.model->regions) {
+        if (region.bounds.empty()) continue;
+        const glm::dvec3 middle = 0.5 * (glm::dvec3(region.bounds.min) + glm::dvec3(region.bounds.max));
+        const glm::dvec3 half = glm::dvec3(region.bounds.max) - middle;
+        const glm::dvec3 centre = placed.worldFromModel * glm::dvec4(middle, 1.0);
+        glm::dvec3 reach(0.0);
+        for (int axis = 0; axis < 3; ++axis) reach += half[axis] * glm::abs(glm::dvec3(placed.worldFromModel[axis]));
+        if (glm::all(glm::lessThanEqual(centre - reach, box.max)) && glm::all(glm::greaterThanEqual(centre + reach, box.min)))
+            return true;
     }
+    return false;
+}
+
+/// Calls `visit` with each sample of the model in the box, always in the same order.
+template <class Visit>
+void forEachSample(const PlacedModel& placed, const WorldBox& box, const Visit& visit) {
+    const std::vector<bool> all(placed.asset->materials.size(), true);
+    const glm::dmat3 normals = glm::transpose(glm::dmat3(placed.modelFromWorld));
+    forEachExposedFace(*placed.model, {.wanted = all, .hides = all}, [&](const VoxelFace& face) {
+        glm::dvec3 middle = glm::dvec3(face.voxel) + 0.5;
+        middle[face.axis()] += face.isUpper() ? 0.5 : -0.5;
+        const glm::dvec3 position = placed.worldFromModel * glm::dvec4(middle, 1.0);
+        if (glm::any(glm::lessThan(position, box.min)) || glm::any(glm::greaterThan(position, box.max))) return;
+        const glm::dvec3 outward = (face.isUpper() ? 1.0 : -1.0) * normals[face.axis()];
+        visit(SurfaceSample{.position = glm::vec3(position), .normal = glm::vec3(glm::normalize(outward))});
+    });
 }
 
 }  // namespace
@@ -34,14 +53,23 @@ ProximityGrid proximityShape(const ProbeGrid& probes, const glm::uvec3& cells) {
 
 std::vector<SurfaceSample> surfaceSamples(std::span<const PlacedModel> models, const ProximityGrid& shape,
                                           std::uint64_t most) {
-    std::uint64_t count = 0;
-    forEachSample(models, shape, [&](const SurfaceSample&) { ++count; });
-    const std::uint64_t stride = (count + most - 1) / std::max<std::uint64_t>(most, 1);
-    std::vector<SurfaceSample> samples;
-    samples.reserve(stride == 0 ? 0 : count / stride + 1);
-    std::uint64_t index = 0;
-    forEachSample(models, shape, [&](const SurfaceSample& sample) {
-        if (index++ % stride == 0) samples.push_back(sample);
+    const glm::dvec3 low(shape.start);
+    const WorldBox box{.min = low, .max = low + glm::dvec3(shape.step) * glm::dvec3(shape.counts)};
+    // Counted first: all samples at once may not fit into memory.
+    std::vector<std::uint64_t> firstOfModel(models.size() + 1);
+    tbb::parallel_for(std::size_t{0}, models.size(), [&](std::size_t i) {
+        if (meets(models[i], box)) forEachSample(models[i], box, [&](const SurfaceSample&) { ++firstOfModel[i + 1]; });
+    });
+    std::partial_sum(firstOfModel.begin(), firstOfModel.end(), firstOfModel.begin());
+    const std::uint64_t stride = std::max<std::uint64_t>((firstOfModel.back() + most - 1) / std::max<std::uint64_t>(most, 1), 1);
+    std::vector<SurfaceSample> samples((firstOfModel.back() + stride - 1) / stride);
+    tbb::parallel_for(std::size_t{0}, models.size(), [&](std::size_t i) {
+        std::uint64_t index = firstOfModel[i];
+        if (index == firstOfModel[i + 1]) return;
+        forEachSample(models[i], box, [&](const SurfaceSample& sample) {
+            if (index % stride == 0) samples[index / stride] = sample;
+            ++index;
+        });
     });
     return samples;
 }

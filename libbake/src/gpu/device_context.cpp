@@ -45,6 +45,10 @@ Result<std::shared_ptr<DeviceContext>> DeviceContext::open(const DeviceOptions& 
 
 DeviceContext::DeviceContext(Instance instance, FoundDevice found, const DeviceOptions& options)
     : instance_(std::move(instance)), found_(std::move(found)), staging_(stagingServices()) {
+    if (options.memoryBytes != 0) {
+        mostMemoryBytes_ = options.memoryBytes;
+        found_.info.localMemoryBytes = std::min(found_.info.localMemoryBytes, options.memoryBytes);
+    }
     createDevice(options.deviceExtensions);
     queue_ = device_.getQueue(found_.queueFamily, 0);
     commandPool_ =
@@ -112,6 +116,8 @@ Allocation DeviceContext::allocate(std::uint64_t sizeBytes, MemoryKind kind) {
                      kAddressAlignment;
     if (made.sizeBytes > maxBufferBytes_)
         throw vk::OutOfDeviceMemoryError("larger than one allocation may be");
+    if (made.sizeBytes > mostMemoryBytes_ - std::min(memory_.currentBytes, mostMemoryBytes_))
+        throw vk::OutOfDeviceMemoryError("more than may be taken of the device's memory");
     vk::BufferUsageFlags usage =
         vk::BufferUsageFlagBits::eTransferSrc | vk::BufferUsageFlagBits::eTransferDst;
     if (kind == MemoryKind::Device) {

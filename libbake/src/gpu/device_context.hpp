@@ -85,6 +85,7 @@ class DeviceContext {
     vk::raii::QueryPool timeStamps_{nullptr};
     std::uint64_t submissions_ = 0;
     std::uint64_t maxBufferBytes_ = 0;
+    std::uint64_t mostMemoryBytes_ = ~std::uint64_t{0};
     double timeStampNs_ = 0.0;  ///< 0 = the queue has none
     std::uint32_t timeStampBits_ = 0;
     MemoryUse memory_;
