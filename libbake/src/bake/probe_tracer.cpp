@@ -139,8 +139,8 @@ Result<ProbeTracer> ProbeTracer::create(gpu::Device& device, const gpu::Scene& s
                                      PathWaves::bytesFor(items * shared::kItemPaths) +
                                      input.emitters.faces.size() * sizeof(shared::EmitterFace);
         tracer.error().message += fmt::format(
-            "; beside {} MiB of the scene the bake needs {} MiB of device memory: choose a smaller --profile or --resolution",
-            device.memory().currentBytes >> 20, (needed >> 20) + 1);
+            "; the bake needs {} MiB of device memory beside {} MiB for the scene", (needed >> 20) + 1,
+            device.memory().currentBytes >> 20);
         return tracer;
     }
 }
