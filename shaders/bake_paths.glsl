@@ -15,7 +15,8 @@ const uint kPairEmitterAndLobe = 2u;  // which emitter, which lobe
 const uint kPairGlass = 3u;           // reflected or not, through or not
 const uint kPairRoulette = 4u;
 const uint kPairsPerVertex = 5u;
-const uint kStratifiedVertices = 2u;
+// Vertices whose numbers are points of a scrambled Sobol sequence; hashes beyond.
+layout(constant_id = 3) const uint kStratifiedVertices = 2u;
 
 vec2 randomPair(uint key, uint vertex, uint pair, uint index) {
     uint pairKey = joinHash(key, vertex * kPairsPerVertex + pair);

@@ -42,6 +42,7 @@ struct BakeSettings {
     /// The probes to bake; the file is then a shard. Nothing = all.
     std::optional<ProbeRange> range;
     LightSampling sampling = LightSampling::Combined;
+    bool stratified = true;  ///< Sobol points for the first two vertices; false, for tests: hashes for all
     bool relocate = true;   ///< move probes out of solids; false: those that touch one are inactive
     bool proximity = true;  ///< make the proximity grid; shards have none
     int zstdLevel = 1;      ///< 1 to 19

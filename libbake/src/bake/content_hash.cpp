@@ -124,6 +124,7 @@ ContentKey fieldHash(const ProbeFieldInfo& info, const BakeSettings& settings) {
     hasher.add(settings.noiseTarget).add(settings.noiseFloor);
     hasher.add(settings.maxBounces.value_or(0xffffffffu));
     hasher.add(static_cast<std::uint8_t>(settings.sampling)).add(std::uint8_t{settings.relocate});
+    hasher.add(std::uint8_t{settings.stratified});
     return hasher.key();
 }
 

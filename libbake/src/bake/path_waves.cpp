@@ -81,10 +81,11 @@ Result<PathWaves::Programs> PathWaves::createPrograms(gpu::Device& device, const
     const std::array castRays{glass, shared::kQueueRays, persistent};
     const std::array castSun{glass, shared::kQueueSun, shadowPersistent};
     const std::array castEmitters{glass, shared::kQueueEmitters, shadowPersistent};
-    const auto onlyGlass = std::span(castRays).first(1);
-    PFVOX_TRY(gpu::Program, begin, create(shaders::kBakeBegin, "bake begin", onlyGlass));
+    const std::array sampling{glass, 0u, 0u, options.stratified ? 2u : 0u};
+    const auto onlyGlass = std::span(sampling).first(1);
+    PFVOX_TRY(gpu::Program, begin, create(shaders::kBakeBegin, "bake begin", sampling));
     PFVOX_TRY(gpu::Program, rays, create(shaders::kBakeCast, "bake cast rays", castRays));
-    PFVOX_TRY(gpu::Program, scatter, create(shaders::kBakeScatter, "bake scatter", onlyGlass));
+    PFVOX_TRY(gpu::Program, scatter, create(shaders::kBakeScatter, "bake scatter", sampling));
     PFVOX_TRY(gpu::Program, queue, create(shaders::kBakeQueue, "bake queue", onlyGlass));
     PFVOX_TRY(gpu::Program, sun, create(shaders::kBakeCast, "bake cast to the sun", castSun));
     PFVOX_TRY(gpu::Program, emitters, create(shaders::kBakeCast, "bake cast to emitters", castEmitters));

@@ -41,6 +41,7 @@ struct WaveOptions {
     bool hasGlass = false;
     bool hasSun = false;
     bool hasEmitters = false;
+    bool stratified = true;
     std::uint32_t maxBounces = shared::kMaxPathBounces;
     double submitSeconds = 0.25;
 };

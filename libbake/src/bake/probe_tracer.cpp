@@ -67,6 +67,7 @@ WaveOptions waveOptions(const TracerInput& input, const BakeSettings& settings) 
     return {.hasGlass = input.hasGlass,
             .hasSun = std::max({sun.x, sun.y, sun.z}) > 0.0,
             .hasEmitters = !input.emitters.faces.empty() && settings.sampling != LightSampling::Directions,
+            .stratified = settings.stratified,
             .maxBounces = std::min(settings.maxBounces.value_or(shared::kMaxPathBounces), shared::kMaxPathBounces),
             .submitSeconds = settings.dispatchSeconds};
 }
