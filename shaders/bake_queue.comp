@@ -16,7 +16,6 @@ void main() {
         controls.control.launch[4u * queue] = min(groups, kBakeRowGroups);
         controls.control.launch[4u * queue + 1u] = (groups + kBakeRowGroups - 1u) / kBakeRowGroups;
         controls.control.launch[4u * queue + 2u] = 1u;
-        controls.control.taken[queue] = 0u;
         controls.control.waiting[(1u - push.set) * kQueueKinds + queue] = 0u;
         rays += count;
     }

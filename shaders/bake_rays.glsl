@@ -55,29 +55,87 @@ Ray behindGlass(Scene scene, Ray ray, Hit hit, Surface surface) {
 // One body of glass is one sheet: only what a ray enters from outside counts.
 bool entersGlass(Surface surface, uint lastGlass) { return surface.face != kFaceInside || surface.material != lastGlass; }
 
-// Share of the light that comes through along a ray of unit direction, by colour.
-vec3 transmittance(Scene scene, Ray ray, inout RayCounts counts) {
-    if (kHasGlass == 0u) {
-        ++counts.rays;
-        return traceAny(scene, ray, counts.trace) ? vec3(0.0) : vec3(1.0);
-    }
+// Share of the light that comes through one model, by colour.
+vec3 transmittanceOfModel(Scene scene, uint instance, Ray ray, inout Walk walk, inout RayCounts counts) {
     vec3 through = vec3(1.0);
-    uint lastGlass = kNoMaterial;
-    for (uint i = 0u; i < kMaxGlassSteps; ++i) {
-        Hit hit = castRay(scene, ray, counts);
-        if (hit.instance == kNoInstance) return through;
-        Surface surface = surfaceOf(scene, ray, hit);
-        MaterialRecord material = materialOf(scene, surface);
-        if (!letsThrough(material)) return vec3(0.0);
-        if (entersGlass(surface, lastGlass)) {
-            float cosine = abs(dot(surface.normal, ray.direction));
-            through *= (1.0 - glassReflectance(material, cosine)) * glassTint(material);
+    uint lastGlass = kNoMaterial;  // of the cell before, when there is nothing in between
+    uint lastStep = counts.trace.steps + kMaxTraceSteps;
+    while (++counts.trace.steps != lastStep) {
+        uint state = stepWalk(walk);
+        if (state == kWalkGoesOn) lastGlass = kNoMaterial;
+        if (state == kWalkHit) {
+            Hit hit;
+            takeHit(walk, hit);
+            hit.instance = instance;
+            Surface surface = surfaceOf(scene, ray, hit);
+            MaterialRecord material = materialOf(scene, surface);
+            if (!letsThrough(material)) return vec3(0.0);
+            if (surface.material != lastGlass) {
+                float cosine = abs(dot(surface.normal, ray.direction));
+                through *= (1.0 - glassReflectance(material, cosine)) * glassTint(material);
+            }
+            lastGlass = surface.material;
+            state = passCell(walk);
         }
-        lastGlass = surface.material;
-        ray = behindGlass(scene, ray, hit, surface);
-        if (ray.tMax <= 0.0) return through;
+        if (state == kWalkLeft) return through;
     }
+    counts.trace.capped = 1u;
     return vec3(0.0);
+}
+
+// Share of the light that comes through along a ray of unit direction, by colour.
+vec3 transmittance(Scene sceneBuffer, Ray ray, inout RayCounts counts) {
+    ++counts.rays;
+    if (kHasGlass == 0u) return traceAny(sceneBuffer, ray, counts.trace) ? vec3(0.0) : vec3(1.0);
+    SceneHeader scene = sceneBuffer.header;
+    BvhWalk bvhWalk = beginBvhWalk(scene, ray);
+    vec3 through = vec3(1.0);
+    BvhNode leaf;
+    while (nextBvhLeaf(BvhNodes(scene.bvhNodes), bvhWalk, ray.tMax, leaf)) {
+        for (uint i = leaf.first; i < leaf.first + leaf.count; ++i) {
+            Walk walk;
+            if (!beginInstance(scene, i, ray, ray.tMax, walk)) continue;
+            through *= transmittanceOfModel(sceneBuffer, i, ray, walk, counts);
+            if (maxOf(through) <= 0.0) return vec3(0.0);
+        }
+    }
+    return through;
+}
+
+// True when a walk that begins in glass of this material has come to something else; false when it has ended there.
+bool leaveGlass(Scene scene, uint instance, Ray ray, uint glass, inout Walk walk) {
+    for (uint i = 0u; i < kMaxTraceSteps; ++i) {
+        Walk ahead = walk;
+        if (stepWalk(ahead) != kWalkHit) return true;
+        Hit hit;
+        takeHit(ahead, hit);
+        hit.instance = instance;
+        if (surfaceOf(scene, ray, hit).material != glass) return true;
+        if (passCell(ahead) == kWalkLeft) return false;
+        walk = ahead;
+    }
+    return false;
+}
+
+// The closest hit of a ray that goes on through the glass that it begins in: `glass`, a material or kNoMaterial.
+Hit castThroughGlass(Scene sceneBuffer, Ray ray, uint glass, inout RayCounts counts) {
+    if (glass == kNoMaterial) return castRay(sceneBuffer, ray, counts);
+    ++counts.rays;
+    SceneHeader scene = sceneBuffer.header;
+    BvhWalk bvhWalk = beginBvhWalk(scene, ray);
+    Hit hit = missOf(ray);
+    BvhNode leaf;
+    while (nextBvhLeaf(BvhNodes(scene.bvhNodes), bvhWalk, hit.t, leaf)) {
+        for (uint i = leaf.first; i < leaf.first + leaf.count; ++i) {
+            Walk walk;
+            if (!beginInstance(scene, i, ray, hit.t, walk)) continue;
+            if (!leaveGlass(sceneBuffer, i, ray, glass, walk)) continue;
+            if (!finishWalk(walk, counts.trace)) continue;
+            takeHit(walk, hit);
+            hit.instance = i;
+        }
+    }
+    return hit;
 }
 
 // Irradiance of the sun at normal incidence, as it arrives at a point.

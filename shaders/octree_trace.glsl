@@ -176,29 +176,9 @@ bvec3 firstAxis(vec3 tPlanes, float tFirst) {
     return axis;
 }
 
-// Down to the smallest cell at the position, then on to the next one.
-uint stepWalk(inout Walk walk) {
-    uint cell;
-    uint cells;
-    for (;;) {
-        cell = cellAt(walk.position, walk.scale) ^ walk.flip;
-        cells = maskHalf(walk.node, cell);
-        if ((cells >> (cell & 31u) & 1u) == 0u) break;
-        if (kindOf(walk.node) != kWideInner) return kWalkHit;
-        // Push
-        walkStack[walkStackIndex(walk.scale)] = walk.index;
-        walk.index = walk.node.child + cellsBefore(walk.node, cell);
-        walk.node = WideNodes(walk.nodes).at[walk.index];
-        if (kindOf(walk.node) == kWideSolid) return kWalkHit;
-#ifdef PFVOX_TRACE_LOD
-        if (edgeOf(walk.scale) < (walk.tEnter + walk.t) * walk.coneGrowth) return kWalkHit;
-#endif
-        walk.scale -= 2;
-    }
-
-    // Advance to the exit of the cell, or of its 2^3 group when that is empty.
-    bool groupEmpty = (cells >> (cell & 10u) & 0x00330033u) == 0u;
-    uint above = ~0u << (groupEmpty ? walk.scale + 1 : walk.scale);
+// On to the cell behind the one of this scale at the position.
+uint leaveCell(inout Walk walk, int scale) {
+    uint above = ~0u << scale;
     uvec3 low = walk.position & above;
     vec3 tPlanes = (uintBitsToFloat(low) - walk.origin) * walk.inverse;
     float tExit = minOf(tPlanes);
@@ -220,6 +200,40 @@ uint stepWalk(inout Walk walk) {
         walk.node = WideNodes(walk.nodes).at[walk.index];
     }
     return kWalkGoesOn;
+}
+
+// Down to the smallest cell at the position, then on to the next one.
+uint stepWalk(inout Walk walk) {
+    uint cell;
+    uint cells;
+    for (;;) {
+        cell = cellAt(walk.position, walk.scale) ^ walk.flip;
+        cells = maskHalf(walk.node, cell);
+        if ((cells >> (cell & 31u) & 1u) == 0u) break;
+        if (kindOf(walk.node) != kWideInner) return kWalkHit;
+        // Push
+        walkStack[walkStackIndex(walk.scale)] = walk.index;
+        walk.index = walk.node.child + cellsBefore(walk.node, cell);
+        walk.node = WideNodes(walk.nodes).at[walk.index];
+        if (kindOf(walk.node) == kWideSolid) return kWalkHit;
+#ifdef PFVOX_TRACE_LOD
+        if (edgeOf(walk.scale) < (walk.tEnter + walk.t) * walk.coneGrowth) return kWalkHit;
+#endif
+        walk.scale -= 2;
+    }
+
+    // The cell is empty, and perhaps its 2^3 group with it.
+    bool groupEmpty = (cells >> (cell & 10u) & 0x00330033u) == 0u;
+    return leaveCell(walk, groupEmpty ? walk.scale + 1 : walk.scale);
+}
+
+// On from the solid cell that stepWalk has stopped at, for rays that go through some materials.
+uint passCell(inout Walk walk) {
+    if (kindOf(walk.node) == kWideSolid) {  // the cell is a node: back to the one it is a cell of
+        walk.index = walkStack[walkStackIndex(walk.scale)];
+        walk.node = WideNodes(walk.nodes).at[walk.index];
+    }
+    return leaveCell(walk, walk.scale);
 }
 
 // What a walk that has hit found: all of `hit` but `instance`.

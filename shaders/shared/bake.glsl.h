@@ -23,7 +23,7 @@ PFVOX_CONSTANT(uint, kItemPaths, 1024u);     // kTileTexels x kBatchSamples
 PFVOX_CONSTANT(uint, kMaxBlockEdge, 4u);     // texels of the depth map along one of the light map, at most
 PFVOX_CONSTANT(uint, kRouletteBounce, 3u);   // the first bounce that roulette may end
 PFVOX_CONSTANT(uint, kMaxPathBounces, 128u);  // 0.95^128 of the light is left then, at most
-PFVOX_CONSTANT(uint, kMaxGlassSteps, 64u);   // voxels of glass on one straight line
+PFVOX_CONSTANT(uint, kMaxGlassSteps, 64u);   // bodies of glass that a path goes through or is reflected by
 PFVOX_CONSTANT(float, kRayOffsetVoxels, 0.01f);
 
 // LightSampling
@@ -147,16 +147,15 @@ PFVOX_CONSTANT(uint, kQueueKinds, 4u);
 
 PFVOX_STRUCT(WaveControl) {
     uint waiting[8];    // by set (0, 1) and queue: kQueueKinds x set + queue
-    uint taken[4];      // by queue: the next one that a persistent lane takes
-    uint launch[16];    // by queue: workgroups along x, y, z of a launch that covers it
+    uint launch[12];    // four by queue: workgroups along x, y, z of a launch that covers it
     uint raysLow;       // cast since the bake began
     uint raysHigh;
     uint cappedRays;    // given up by the traversal
     uint reserved;
 };
-PFVOX_SIZE(WaveControl, 128);
-PFVOX_OFFSET(WaveControl, launch, 48);
-PFVOX_OFFSET(WaveControl, raysLow, 112);
+PFVOX_SIZE(WaveControl, 96);
+PFVOX_OFFSET(WaveControl, launch, 32);
+PFVOX_OFFSET(WaveControl, raysLow, 80);
 
 // All that the programs work on.
 PFVOX_STRUCT(BakeWave) {

@@ -9,11 +9,11 @@ namespace pfvox::bake {
 
 namespace {
 
-// Enough to fill the largest devices; those that find nothing to do end at once.
-constexpr std::uint32_t kPersistentGroups = 4096;
 constexpr std::uint32_t kStepsPerSubmit = 12;
 constexpr std::uint64_t kFirstItems = 512;
-constexpr std::uint64_t kMostItems = 16384;
+// Some sixty vertices until the last path of a wave has ended, most of them of few paths: the larger the wave, the less
+// these count.
+constexpr std::uint64_t kMostItems = 65536;
 constexpr std::uint64_t kBytesPerPath = sizeof(shared::PathState) + sizeof(glm::vec4) + sizeof(shared::PathHit) +
                                         2 * sizeof(shared::ShadowRay) + 2 * sizeof(std::uint32_t);
 
@@ -67,28 +67,25 @@ class PathWaves::Recording {
 PathWaves::PathWaves(gpu::Device& device, const WaveOptions& options, Programs programs, Buffers buffers,
                      std::size_t items)
     : device_(&device), options_(options), programs_(std::move(programs)), buffers_(std::move(buffers)),
-      mostItems_(items), persistent_(device.info().kind != gpu::DeviceKind::Software),
-      pace_(persistent_ ? kFirstItems : items, items) {}
+      mostItems_(items), pace_(kFirstItems, items) {}
 
 Result<PathWaves::Programs> PathWaves::createPrograms(gpu::Device& device, const WaveOptions& options) {
     const std::uint32_t glass = options.hasGlass ? 1 : 0;
-    const std::uint32_t persistent = device.info().kind != gpu::DeviceKind::Software ? 1 : 0;
-    const std::uint32_t shadowPersistent = persistent & ~glass;  // light through glass is followed one ray an invocation
+    const std::array sampling{glass, 0u, 0u, options.stratified ? 2u : 0u};
+    const std::array toHits{glass, shared::kQueueRays};
+    const std::array toSun{glass, shared::kQueueSun};
+    const std::array toEmitters{glass, shared::kQueueEmitters};
     const auto create = [&](std::span<const std::uint32_t> spirv, std::string_view name,
                             std::span<const std::uint32_t> constants) {
         return device.createProgram(spirv, sizeof(shared::WavePush), name, constants);
     };
-    const std::array castRays{glass, shared::kQueueRays, persistent};
-    const std::array castSun{glass, shared::kQueueSun, shadowPersistent};
-    const std::array castEmitters{glass, shared::kQueueEmitters, shadowPersistent};
-    const std::array sampling{glass, 0u, 0u, options.stratified ? 2u : 0u};
     const auto onlyGlass = std::span(sampling).first(1);
     PFVOX_TRY(gpu::Program, begin, create(shaders::kBakeBegin, "bake begin", sampling));
-    PFVOX_TRY(gpu::Program, rays, create(shaders::kBakeCast, "bake cast rays", castRays));
+    PFVOX_TRY(gpu::Program, rays, create(shaders::kBakeCast, "bake cast rays", toHits));
     PFVOX_TRY(gpu::Program, scatter, create(shaders::kBakeScatter, "bake scatter", sampling));
     PFVOX_TRY(gpu::Program, queue, create(shaders::kBakeQueue, "bake queue", onlyGlass));
-    PFVOX_TRY(gpu::Program, sun, create(shaders::kBakeCast, "bake cast to the sun", castSun));
-    PFVOX_TRY(gpu::Program, emitters, create(shaders::kBakeCast, "bake cast to emitters", castEmitters));
+    PFVOX_TRY(gpu::Program, sun, create(shaders::kBakeCast, "bake cast to the sun", toSun));
+    PFVOX_TRY(gpu::Program, emitters, create(shaders::kBakeCast, "bake cast to emitters", toEmitters));
     PFVOX_TRY(gpu::Program, gather, create(shaders::kBakeGather, "bake gather", onlyGlass));
     return Programs{std::move(begin), std::move(rays),     std::move(scatter), std::move(queue),
                     std::move(sun),   std::move(emitters), std::move(gather)};
@@ -173,17 +170,12 @@ Result<void> PathWaves::trace(std::span<const TileWork> work, glm::uvec2 wave, c
 
 std::uint32_t PathWaves::recordSteps(Recording& recording, std::uint32_t steps, std::uint32_t set) const {
     for (std::uint32_t i = 0; i < steps; ++i) {
-        if (persistent_) recording.groups(programs_.castRays, 0, kPersistentGroups, set);
-        else recording.queued(programs_.castRays, shared::kQueueRays, set);
+        recording.queued(programs_.castRays, shared::kQueueRays, set);
         recording.queued(programs_.scatter, shared::kQueueRays, set);
         set = 1 - set;
         recording.groups(programs_.queue, 1, 1, set);
-        const auto cast = [&](const gpu::Program& program, std::uint32_t queue) {
-            if (persistent_ && !options_.hasGlass) recording.groups(program, 0, kPersistentGroups, set);
-            else recording.queued(program, queue, set);
-        };
-        if (options_.hasSun) cast(programs_.castSun, shared::kQueueSun);
-        if (options_.hasEmitters) cast(programs_.castEmitters, shared::kQueueEmitters);
+        if (options_.hasSun) recording.queued(programs_.castSun, shared::kQueueSun, set);
+        if (options_.hasEmitters) recording.queued(programs_.castEmitters, shared::kQueueEmitters, set);
     }
     return set;
 }

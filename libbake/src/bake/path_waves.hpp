@@ -102,7 +102,6 @@ class PathWaves {
     Programs programs_;
     Buffers buffers_;
     std::size_t mostItems_;
-    bool persistent_ = false;
     Pace pace_;
     std::uint32_t emptySet_ = 0;  ///< of the queues: a wave begins there
     std::uint64_t rays_ = 0;

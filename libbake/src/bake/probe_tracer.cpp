@@ -16,7 +16,7 @@ namespace {
 constexpr std::uint64_t kMostGroup = 64;
 constexpr std::uint64_t kMostSoftwareGroup = 4;
 /// Probes of a group bring this many waves of paths, so that what is done once a group does not count.
-constexpr std::uint64_t kWavesPerGroup = 8;
+constexpr std::uint64_t kWavesPerGroup = 4;
 
 std::uint64_t mapWords(const TracedEdges& edges) {
     return 2ull * edges.depth * edges.depth + 7ull * edges.light * edges.light;
