@@ -13,6 +13,11 @@
 #include "probe_field.glsl"
 
 const float kCompactWeightFloor = 1e-4;
+const float kPlaneVoxels = 0.25;       // how far a texel's surface may lie off the plane of the point
+const float kPlaneSlackShare = 1e-3;   // of the distance to the plane: depth codes are no finer
+const float kMixedTexelWeight = 0.05;
+const float kLeastTexelWeight = 0.02;  // of a neighbour that lies on the point's own texel's border
+const float kTexelConfidence = 4.0;    // a quarter of a texel's width that agrees is as good as all of it
 
 struct ProbeLight {
     vec3 indirect;
@@ -27,23 +32,27 @@ struct SurfacePoint {
     vec3 normal;
 };
 
-// Share of the depth texels under one light texel that show the plane of the surface.
+// Share of the depth texels under one light texel that show the plane of the surface. Each is asked where its own ray
+// meets that plane, so that the slope of the surface does not matter and planes a voxel apart stay apart.
 float agreementOf(ProbeFieldRecord field, ProbeEntry probe, SurfacePoint point, ivec2 lightTexel) {
-    uint block = max(field.depthEdge / field.lightEdge, 1u);
     float height = dot(point.position - probe.position, point.normal);  // of the plane, as the probe sees it
+    if (height >= 0.0) return 0.0;
+    uint block = max(field.depthEdge / field.lightEdge, 1u);
+    float tolerance = max(kPlaneVoxels * field.voxelMetres, kPlaneSlackShare * -height);
     uint agreeing = 0u;
     for (uint i = 0u; i < block * block; ++i) {
         uint x = min(uint(lightTexel.x) * block + i % block, field.depthEdge - 1u);
         uint y = min(uint(lightTexel.y) * block + i / block, field.depthEdge - 1u);
         uint word = ProbeWords(probe.depthNormal).at[x + field.depthEdge * y];
-        vec3 direction = directionOfTexel(x, y, field.depthEdge);
-        float cosine = dot(direction, point.normal);
-        if (cosine >= -1e-4 || height >= 0.0) continue;
-        float onPlane = height / cosine;
-        if (seesSurface(word, onPlane * direction, point.normal, field.depthEdge, field.depthScaleAndLogRange)) ++agreeing;
+        if (isMiss(word) || dot(normalOf(word), point.normal) <= kSurfaceMinNormalDot) continue;
+        float cosine = dot(directionOfTexel(x, y, field.depthEdge), point.normal);
+        if (abs(metresOfCode(field, depthCodeOf(word)) * cosine - height) < tolerance) ++agreeing;
     }
     return float(agreeing) / float(block * block);
 }
+
+// What a texel of mixed planes shows is a mixture of their light: it counts where there is nothing better.
+float purityWeight(float share) { return share >= 1.0 ? 1.0 : kMixedTexelWeight * share; }
 
 // Light of the texels around the direction to the point, those only that agree; w = how far they do, 0 to 1.
 vec4 lightSeenBy(ProbeFieldRecord field, ProbeEntry probe, SurfacePoint point) {
@@ -51,17 +60,19 @@ vec4 lightSeenBy(ProbeFieldRecord field, ProbeEntry probe, SurfacePoint point) {
     ivec2 low = ivec2(floor(at));
     vec2 fraction = at - vec2(low);
     vec4 sum = vec4(0.0);
+    float covered = 0.0;
     for (int i = 0; i < 4; ++i) {
         ivec2 offset = ivec2(i & 1, i >> 1);
         ivec2 texel = wrappedTexel(low + offset, field.lightEdge);
-        vec2 near = mix(1.0 - fraction, fraction, vec2(offset));
         float share = agreementOf(field, probe, point, texel);
-        float weight = near.x * near.y * share * share;
-        if (weight <= 0.0) continue;
+        if (share <= 0.0) continue;
+        vec2 near = max(mix(1.0 - fraction, fraction, vec2(offset)), vec2(kLeastTexelWeight));
+        float weight = near.x * near.y * purityWeight(share);
         uint word = ProbeWords(probe.light).at[uint(texel.x) + field.lightEdge * uint(texel.y)];
         sum += weight * vec4(unpackLight(word), 1.0);
+        covered += near.x * near.y * (share >= 1.0 ? 1.0 : 0.25 * share * share);
     }
-    return sum.w > 0.0 ? vec4(sum.rgb / sum.w, min(sum.w, 1.0)) : vec4(0.0);
+    return sum.w > 0.0 ? vec4(sum.rgb / sum.w, min(kTexelConfidence * covered, 1.0)) : vec4(0.0);
 }
 
 // First word of the proximity cell's list, or kNoProbeIndex outside the grid.
@@ -88,8 +99,9 @@ vec4 lightOfTexels(ProbeFieldRecord field, SurfacePoint point) {
         vec4 seen = lightSeenBy(field, probe, point);
         if (seen.w <= 0.0) continue;
         vec3 toPoint = point.position - probe.position;
-        float footprint = texelAngle(field.lightEdge);
-        float weight = seen.w / max(dot(toPoint, toPoint) * footprint * footprint, 1e-12);
+        float squared = max(dot(toPoint, toPoint), 1e-8);
+        // Texels a square metre of the surface.
+        float weight = seen.w * max(-dot(toPoint, point.normal), 0.0) * inversesqrt(squared) / squared;
         sum += weight * vec4(seen.rgb, 1.0);
         unseen *= 1.0 - seen.w;
     }
