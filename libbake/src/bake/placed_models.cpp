@@ -4,8 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include <cmath>
-
 namespace pfvox::bake {
 
 namespace {

@@ -41,7 +41,7 @@ class Filter {
     }
 
     std::vector<glm::vec3> run() {
-        const int passes = std::max(2, std::bit_width(map_.lightEdge) - 6);  // texels are smaller where there are more
+        const int passes = std::max(2, static_cast<int>(std::bit_width(map_.lightEdge)) - 6);  // texels are smaller where there are more
         for (int pass = 0; pass < passes; ++pass) runPass(1 << pass);
         return std::move(light_);
     }
