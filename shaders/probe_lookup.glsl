@@ -75,15 +75,6 @@ vec4 lightSeenBy(ProbeFieldRecord field, ProbeEntry probe, SurfacePoint point) {
     return sum.w > 0.0 ? vec4(sum.rgb / sum.w, min(kTexelConfidence * covered, 1.0)) : vec4(0.0);
 }
 
-// First word of the proximity cell's list, or kNoProbeIndex outside the grid.
-uint proximityListOf(ProbeFieldRecord field, vec3 point) {
-    if (field.cellCounts.x == 0) return kNoProbeIndex;
-    vec3 at = (point - field.cellStart) / field.cellStep;
-    if (any(lessThan(at, vec3(0.0))) || any(greaterThanEqual(at, vec3(field.cellCounts)))) return kNoProbeIndex;
-    ivec3 cell = ivec3(at);
-    return kProbesOfCell * uint(cell.x + field.cellCounts.x * (cell.y + field.cellCounts.y * cell.z));
-}
-
 vec4 lightOfTexels(ProbeFieldRecord field, SurfacePoint point) {
     if (field.lightEdge == 0u || field.depthEdge == 0u) return vec4(0.0);
     // A point on the face between two cells belongs to the one that it is seen from.
@@ -159,12 +150,13 @@ float compactWeight(ProbeFieldRecord field, ProbeEntry probe, SurfacePoint point
     vec3 toProbe = probe.position - point.position;
     float distance = length(toProbe);
     float facing = distance > 1e-6 ? 0.5 * dot(toProbe, point.normal) / distance + 0.5 : 1.0;
-    float weight = (facing * facing + 0.05) * visibilityFrom(field, probe, biased - probe.position);
+    float weight = (facing * facing + 0.2) * visibilityFrom(field, probe, biased - probe.position);
     // Little is made less, or many faint probes behind walls would add up.
     if (weight < 0.2) weight *= weight * weight / 0.04;
     return max(weight, kCompactWeightFloor);
 }
 
+// Square roots are blended: one probe beside a lamp or a window does not outshine the seven others.
 vec4 lightOfGrid(ProbeFieldRecord field, SurfacePoint point) {
     vec3 biased = point.position + min(2.0 * field.voxelMetres, 0.2 * min(field.step.x, min(field.step.y, field.step.z))) * point.normal;
     ivec3 cell = probeCellOf(field, biased);
@@ -176,9 +168,10 @@ vec4 lightOfGrid(ProbeFieldRecord field, SurfacePoint point) {
         if (probe.isActive == 0u) continue;
         vec3 near = max(mix(1.0 - fraction, fraction, vec3(cornerOffset(corner))), vec3(0.001));
         float weight = near.x * near.y * near.z * compactWeight(field, probe, point, biased);
-        sum += weight * vec4(irradianceOf(field, probe, point.normal), 1.0);
+        sum += weight * vec4(sqrt(irradianceOf(field, probe, point.normal)), 1.0);
     }
-    return sum.w > 0.0 ? vec4(sum.rgb / sum.w, 1.0) : vec4(0.0);
+    vec3 root = sum.rgb / max(sum.w, 1e-20);
+    return sum.w > 0.0 ? vec4(root * root, 1.0) : vec4(0.0);
 }
 
 vec4 lightOfNearest(ProbeFieldRecord field, SurfacePoint point) {

@@ -4,8 +4,9 @@
 //
 // Texels on one plane share their light where it does not differ by more than its noise: passes of a 5 x 5 kernel whose
 // taps move apart from pass to pass (Dammertz et al. 2010, "Edge-Avoiding A-Trous Wavelet Transform"), guided by the
-// variance, which each pass carries on (Schied et al. 2017, "Spatiotemporal Variance-Guided Filtering"). Weights of two
-// texels are equal both ways, so that a bright texel loses to its neighbours what they gain. Where the light is known
+// variance, which each pass carries on (Schied et al. 2017, "Spatiotemporal Variance-Guided Filtering"). A difference
+// counts by the noise of both texels, so that neighbours take from a texel that is bright by chance; not all of it: a few
+// percent of the light are lost where few paths carry most of it (docs/baking.md). Where the light is known
 // well, nothing changes: the error falls with the number of paths as before, from a lower start.
 #pragma once
 
