@@ -13,6 +13,11 @@
 #include "probe_field.glsl"
 
 const float kCompactWeightFloor = 1e-4;
+const float kPlaneVoxels = 0.25;       // how far a texel's surface may lie off the plane of the point
+const float kPlaneSlackShare = 1e-3;   // of the distance to the plane: depth codes are no finer
+const float kMixedTexelWeight = 0.05;
+const float kLeastTexelWeight = 0.02;  // of a neighbour that lies on the point's own texel's border
+const float kTexelConfidence = 4.0;    // a quarter of a texel's width that agrees is as good as all of it
 
 struct ProbeLight {
     vec3 indirect;
@@ -27,23 +32,27 @@ struct SurfacePoint {
     vec3 normal;
 };
 
-// Share of the depth texels under one light texel that show the plane of the surface.
+// Share of the depth texels under one light texel that show the plane of the surface. Each is asked where its own ray
+// meets that plane, so that the slope of the surface does not matter and planes a voxel apart stay apart.
 float agreementOf(ProbeFieldRecord field, ProbeEntry probe, SurfacePoint point, ivec2 lightTexel) {
-    uint block = max(field.depthEdge / field.lightEdge, 1u);
     float height = dot(point.position - probe.position, point.normal);  // of the plane, as the probe sees it
+    if (height >= 0.0) return 0.0;
+    uint block = max(field.depthEdge / field.lightEdge, 1u);
+    float tolerance = max(kPlaneVoxels * field.voxelMetres, kPlaneSlackShare * -height);
     uint agreeing = 0u;
     for (uint i = 0u; i < block * block; ++i) {
         uint x = min(uint(lightTexel.x) * block + i % block, field.depthEdge - 1u);
         uint y = min(uint(lightTexel.y) * block + i / block, field.depthEdge - 1u);
         uint word = ProbeWords(probe.depthNormal).at[x + field.depthEdge * y];
-        vec3 direction = directionOfTexel(x, y, field.depthEdge);
-        float cosine = dot(direction, point.normal);
-        if (cosine >= -1e-4 || height >= 0.0) continue;
-        float onPlane = height / cosine;
-        if (seesSurface(word, onPlane * direction, point.normal, field.depthEdge, field.depthScaleAndLogRange)) ++agreeing;
+        if (isMiss(word) || dot(normalOf(word), point.normal) <= kSurfaceMinNormalDot) continue;
+        float cosine = dot(directionOfTexel(x, y, field.depthEdge), point.normal);
+        if (abs(metresOfCode(field, depthCodeOf(word)) * cosine - height) < tolerance) ++agreeing;
     }
     return float(agreeing) / float(block * block);
 }
+
+// What a texel of mixed planes shows is a mixture of their light: it counts where there is nothing better.
+float purityWeight(float share) { return share >= 1.0 ? 1.0 : kMixedTexelWeight * share; }
 
 // Light of the texels around the direction to the point, those only that agree; w = how far they do, 0 to 1.
 vec4 lightSeenBy(ProbeFieldRecord field, ProbeEntry probe, SurfacePoint point) {
@@ -51,26 +60,19 @@ vec4 lightSeenBy(ProbeFieldRecord field, ProbeEntry probe, SurfacePoint point) {
     ivec2 low = ivec2(floor(at));
     vec2 fraction = at - vec2(low);
     vec4 sum = vec4(0.0);
+    float covered = 0.0;
     for (int i = 0; i < 4; ++i) {
         ivec2 offset = ivec2(i & 1, i >> 1);
         ivec2 texel = wrappedTexel(low + offset, field.lightEdge);
-        vec2 near = mix(1.0 - fraction, fraction, vec2(offset));
         float share = agreementOf(field, probe, point, texel);
-        float weight = near.x * near.y * share * share;
-        if (weight <= 0.0) continue;
+        if (share <= 0.0) continue;
+        vec2 near = max(mix(1.0 - fraction, fraction, vec2(offset)), vec2(kLeastTexelWeight));
+        float weight = near.x * near.y * purityWeight(share);
         uint word = ProbeWords(probe.light).at[uint(texel.x) + field.lightEdge * uint(texel.y)];
         sum += weight * vec4(unpackLight(word), 1.0);
+        covered += near.x * near.y * (share >= 1.0 ? 1.0 : 0.25 * share * share);
     }
-    return sum.w > 0.0 ? vec4(sum.rgb / sum.w, min(sum.w, 1.0)) : vec4(0.0);
-}
-
-// First word of the proximity cell's list, or kNoProbeIndex outside the grid.
-uint proximityListOf(ProbeFieldRecord field, vec3 point) {
-    if (field.cellCounts.x == 0) return kNoProbeIndex;
-    vec3 at = (point - field.cellStart) / field.cellStep;
-    if (any(lessThan(at, vec3(0.0))) || any(greaterThanEqual(at, vec3(field.cellCounts)))) return kNoProbeIndex;
-    ivec3 cell = ivec3(at);
-    return kProbesOfCell * uint(cell.x + field.cellCounts.x * (cell.y + field.cellCounts.y * cell.z));
+    return sum.w > 0.0 ? vec4(sum.rgb / sum.w, min(kTexelConfidence * covered, 1.0)) : vec4(0.0);
 }
 
 vec4 lightOfTexels(ProbeFieldRecord field, SurfacePoint point) {
@@ -88,8 +90,9 @@ vec4 lightOfTexels(ProbeFieldRecord field, SurfacePoint point) {
         vec4 seen = lightSeenBy(field, probe, point);
         if (seen.w <= 0.0) continue;
         vec3 toPoint = point.position - probe.position;
-        float footprint = texelAngle(field.lightEdge);
-        float weight = seen.w / max(dot(toPoint, toPoint) * footprint * footprint, 1e-12);
+        float squared = max(dot(toPoint, toPoint), 1e-8);
+        // Texels a square metre of the surface.
+        float weight = seen.w * max(-dot(toPoint, point.normal), 0.0) * inversesqrt(squared) / squared;
         sum += weight * vec4(seen.rgb, 1.0);
         unseen *= 1.0 - seen.w;
     }
@@ -147,12 +150,13 @@ float compactWeight(ProbeFieldRecord field, ProbeEntry probe, SurfacePoint point
     vec3 toProbe = probe.position - point.position;
     float distance = length(toProbe);
     float facing = distance > 1e-6 ? 0.5 * dot(toProbe, point.normal) / distance + 0.5 : 1.0;
-    float weight = (facing * facing + 0.05) * visibilityFrom(field, probe, biased - probe.position);
+    float weight = (facing * facing + 0.2) * visibilityFrom(field, probe, biased - probe.position);
     // Little is made less, or many faint probes behind walls would add up.
     if (weight < 0.2) weight *= weight * weight / 0.04;
     return max(weight, kCompactWeightFloor);
 }
 
+// Square roots are blended: one probe beside a lamp or a window does not outshine the seven others.
 vec4 lightOfGrid(ProbeFieldRecord field, SurfacePoint point) {
     vec3 biased = point.position + min(2.0 * field.voxelMetres, 0.2 * min(field.step.x, min(field.step.y, field.step.z))) * point.normal;
     ivec3 cell = probeCellOf(field, biased);
@@ -164,9 +168,10 @@ vec4 lightOfGrid(ProbeFieldRecord field, SurfacePoint point) {
         if (probe.isActive == 0u) continue;
         vec3 near = max(mix(1.0 - fraction, fraction, vec3(cornerOffset(corner))), vec3(0.001));
         float weight = near.x * near.y * near.z * compactWeight(field, probe, point, biased);
-        sum += weight * vec4(irradianceOf(field, probe, point.normal), 1.0);
+        sum += weight * vec4(sqrt(irradianceOf(field, probe, point.normal)), 1.0);
     }
-    return sum.w > 0.0 ? vec4(sum.rgb / sum.w, 1.0) : vec4(0.0);
+    vec3 root = sum.rgb / max(sum.w, 1e-20);
+    return sum.w > 0.0 ? vec4(root * root, 1.0) : vec4(0.0);
 }
 
 vec4 lightOfNearest(ProbeFieldRecord field, SurfacePoint point) {

@@ -15,7 +15,9 @@
 
 #include "probe_field.glsl"
 
-const uint kMaxFieldRestarts = 8u;
+const uint kMaxFieldRestarts = 16u;
+const uint kMaxNamedProbes = 32u;
+const float kProgressVoxels = 0.1;  // what makes asking the same probes again worth while
 const float kDegenerateVoxels = 0.03;  // shorter pieces of a ray are left out
 
 struct FieldHit {
@@ -261,6 +263,32 @@ bool nextFieldCell(ProbeFieldRecord field, FieldRay ray, inout float t, inout iv
     return false;
 }
 
+// What the probes around do not see, those that the proximity grid names for the places along the ray may: they see the
+// surfaces there.
+uint traceNamedProbes(ProbeFieldRecord field, FieldRay ray, inout float tMin, inout FieldHit hit,
+                      inout FieldStatistics statistics) {
+    if (field.cellCounts.x == 0) return kFieldUnknown;
+    float pace = 0.5 * min(field.cellStep.x, min(field.cellStep.y, field.cellStep.z));
+    float end = min(ray.tMax, length(field.step * vec3(field.counts)));
+    uint last = kNoProbeIndex;
+    uint asked = 0u;
+    for (float t = tMin; t < end && asked < kMaxNamedProbes; t += pace) {
+        uint list = proximityListOf(field, ray.origin + t * ray.direction);
+        if (list == kNoProbeIndex || list == last) continue;
+        last = list;
+        for (uint k = 0u; k < kProbesOfCell; ++k) {
+            uint index = ProbeWords(field.cells).at[list + k];
+            if (index == kNoProbeIndex) break;
+            ++asked;
+            uint state = traceProbe(field, ProbeEntries(field.probes).at[index], ray, tMin, hit, statistics);
+            hit.probe = index;
+            if (state != kFieldUnknown) return state;
+        }
+        t = max(t, tMin);
+    }
+    return kFieldUnknown;
+}
+
 // Of fields with depth maps. tMax may be anything up to infinity: beyond Far no probe knows anything. When the probes
 // around the origin do not know, those further along the ray may.
 FieldHit traceField(ProbeFieldRecord field, FieldRay ray, inout FieldStatistics statistics) {
@@ -270,11 +298,18 @@ FieldHit traceField(ProbeFieldRecord field, FieldRay ray, inout FieldStatistics 
     float tCell = 0.0;
     ivec3 cell = probeCellOf(field, ray.origin);
     for (uint restart = 0u; restart <= kMaxFieldRestarts; ++restart) {
+        float before = tMin;
         hit.state = traceCell(field, cell, ray, tMin, hit, statistics);
         if (hit.state != kFieldUnknown) break;
         tCell = max(tCell, tMin);
+        // A probe behind whose sight the ray went may see it again where another has seen it come out.
+        if (tMin > before + kProgressVoxels * field.voxelMetres) {
+            cell = probeCellOf(field, ray.origin + tMin * ray.direction);
+            continue;
+        }
         if (!nextFieldCell(field, ray, tCell, cell)) break;
     }
+    if (hit.state == kFieldUnknown) hit.state = traceNamedProbes(field, ray, tMin, hit, statistics);
     if (hit.state != kFieldHit) hit.t = hit.state == kFieldMiss ? ray.tMax : tMin;
     return hit;
 }

@@ -1,7 +1,8 @@
 // Indirect light of a picture twice: looked up in a probe field, and by tracing paths from the same surface points.
 //
-// The reference shares rays and materials with the baker, but nothing of its sampling: no stratification, no emitter
-// list, no weights. Light is what a path runs into, and the sun from the second vertex on.
+// The reference shares rays and materials with the baker, but nothing of its sampling: no emitter list, no weights, other
+// numbers. Light is what a path runs into, and the sun from the second vertex on. First directions of even and of odd
+// samples are two sequences that know nothing of each other: how far their means are apart tells the noise.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_buffer_reference : require
@@ -54,10 +55,21 @@ bool referenceGlass(Scene scene, inout Ray ray, Hit hit, Surface surface, Materi
     return true;
 }
 
-vec3 referencePath(BakeScene bake, vec3 origin, vec3 normal) {
+// First directions fill the square evenly (the additive recurrence of the plastic number), from a start by chance.
+vec2 firstPair(uint pixel, uint number) {
+    randomState = pixel * 0x85ebca6bu ^ ((number & 1u) + 1u) * 0xc2b2ae35u;
+    for (int i = 0; i < 3; ++i) random();
+    vec2 start = vec2(random(), random());
+    uint step = number >> 1;
+    // Products in 32 bits of fraction, which wrap around as they should.
+    uvec2 walked = uvec2(step * 3242174889u, step * 2447445414u);
+    return fract(start + vec2(walked >> 8) / 16777216.0);
+}
+
+vec3 referencePath(BakeScene bake, vec3 origin, vec3 normal, vec2 first) {
     Scene scene = Scene(bake.scene);
     RayCounts counts = RayCounts(0u, TraceStatistics(0u, 0u));
-    Ray ray = Ray(origin, kInfinity, inFrame(cosineDirection(vec2(random(), random())), normal), 0.0);
+    Ray ray = Ray(origin, kInfinity, inFrame(cosineDirection(first), normal), 0.0);
     vec3 throughput = vec3(1.0);
     vec3 total = vec3(0.0);
     uint lastGlass = kNoMaterial;
@@ -104,11 +116,12 @@ void main() {
     RayCounts counts = RayCounts(0u, TraceStatistics(0u, 0u));
     Hit hit = castRay(scene, ray, counts);
     if (push.sampleCount == 0u) {
-        VerifyPixel fresh = VerifyPixel(vec4(vec3(0.0), -1.0), vec4(0.0), vec4(0.0));
+        VerifyPixel fresh = VerifyPixel(vec4(vec3(0.0), -1.0), vec4(0.0), vec4(0.0), 0u, 0u, 0u, 0u);
         if (hit.instance != kNoInstance) {
             Surface surface = surfaceOf(scene, ray, hit);
             ProbeLight light = lookUpProbes(ProbeFieldRef(push.field).field, surface.position, surface.normal);
             fresh.lookup = vec4(light.indirect, float(light.tier));
+            fresh.material = materialOf(scene, surface).type;
         }
         Pixels(push.pixels).at[index] = fresh;
         return;
@@ -120,8 +133,9 @@ void main() {
     vec4 odd = vec4(0.0);
     for (uint i = 0u; i < push.sampleCount; ++i) {
         uint number = push.firstSample + i;
+        vec2 first = firstPair(index, number);
         seedRandom(index, number);
-        vec4 light = vec4(referencePath(bake, origin, surface.normal), 1.0);
+        vec4 light = vec4(referencePath(bake, origin, surface.normal, first), 1.0);
         if ((number & 1u) == 0u) even += light;
         else odd += light;
     }

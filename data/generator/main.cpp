@@ -9,6 +9,7 @@
 
 #include "courtyard.hpp"
 #include "models.hpp"
+#include "verify_scenes.hpp"
 
 namespace {
 
@@ -24,12 +25,14 @@ void writeFile(const std::filesystem::path& file, const VoxScene& scene, const P
 }
 
 void writeAll(const std::filesystem::path& folder) {
-    std::filesystem::create_directories(folder);
+    std::filesystem::create_directories(folder / "verify");
     const DemoPalette p;
     writeFile(folder / "courtyard.vox", makeCourtyard(p), p.palette);
     writeFile(folder / "tree.vox", {.models = {makeTree(p, 17)}, .nodes = {}, .layers = {}}, p.palette);
     writeFile(folder / "lamp.vox", {.models = {makeLamp(p)}, .nodes = {}, .layers = {}}, p.palette);
     writeFile(folder / "statue.vox", {.models = {makeStatue(p)}, .nodes = {}, .layers = {}}, p.palette);
+    writeFile(folder / "verify/interior.vox", {.models = {makeInterior(p)}, .nodes = {}, .layers = {}}, p.palette);
+    writeFile(folder / "verify/foundry.vox", {.models = {makeFoundry(p)}, .nodes = {}, .layers = {}}, p.palette);
 }
 
 }  // namespace

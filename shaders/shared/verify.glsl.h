@@ -12,8 +12,12 @@ PFVOX_STRUCT(VerifyPixel) {
     vec4 lookup;  // I; w: tier, -1 where the camera sees no surface
     vec4 even;    // sums of the reference's I over samples of even and of odd number; w: how many
     vec4 odd;
+    uint material;  // pfvox::MaterialType of the surface
+    uint reserved0;
+    uint reserved1;
+    uint reserved2;
 };
-PFVOX_SIZE(VerifyPixel, 48);
+PFVOX_SIZE(VerifyPixel, 64);
 
 PFVOX_STRUCT(VerifyView) {
     vec3 position;  // metres

@@ -208,6 +208,19 @@ TEST_F(ProbeBakeScene, VerifyLooksThroughTheCameras) {
         EXPECT_TRUE(std::filesystem::exists(folder / "pictures" / name)) << name;
     EXPECT_EQ(run({"verify", "scene.toml", "out.pf_probe", "--size", "48x32", "--samples", "2", "--max-flip", "0"}).exitCode, 1);
     EXPECT_EQ(run({"verify", "scene.toml", "out.pf_probe", "--camera", "absent"}).exitCode, 4);
+
+    // A reference that is kept gives the same figures, and one of other samples or of another scene is not taken for it.
+    const std::vector<std::string> kept{"verify", "--json", "scene.toml", "out.pf_probe", "--size", "48x32", "--samples", "16",
+                                        "--references", "kept"};
+    const json first = json::parse(run(kept).out);
+    const json second = json::parse(run(kept).out);
+    EXPECT_EQ(first["all"], score["all"]);
+    EXPECT_EQ(second["all"], score["all"]);
+    EXPECT_EQ(readTree(folder / "kept").size(), 1u);
+    ASSERT_EQ(run({"verify", "scene.toml", "out.pf_probe", "--size", "48x32", "--samples", "8", "--references", "kept"}).exitCode, 0);
+    EXPECT_EQ(readTree(folder / "kept").size(), 2u);
+    for (const auto& [name, bytes] : readTree(folder / "kept")) writeText(folder / "kept" / name, "damaged" + bytes);
+    EXPECT_EQ(json::parse(run(kept).out)["all"], score["all"]);
     EXPECT_EQ(run({"verify", "scene.toml", "out.pf_probe", "--size", "48"}).exitCode, 2);
 }
 

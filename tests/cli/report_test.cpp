@@ -91,7 +91,7 @@ TEST(DemoData, generatorReproducesTheCommittedBytes) {
     const TempFolder folder;
     ASSERT_EQ(runProcess({PFVOX_MAKE_DEMO_DATA, folder.path().string()}).exitCode, 0);
     const auto made = readTree(folder.path());
-    EXPECT_EQ(made.size(), 4u);
+    EXPECT_EQ(made.size(), 6u);
     for (const auto& [name, bytes] : made) {
         EXPECT_TRUE(bytes == readText(std::filesystem::path(PFVOX_DATA_DIR) / name))
             << name << " differs: run pfvox-make-demo-data data and commit";

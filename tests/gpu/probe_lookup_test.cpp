@@ -132,13 +132,13 @@ glm::vec3 compactTwin(const ProbeField& field, const SurfaceSample& point, doubl
             const double variance = std::max(moments.y - moments.x * moments.x, 1e-6);
             visible = std::pow(variance / (variance + (d - moments.x) * (d - moments.x)), 3);
         }
-        double own = (facing * facing + 0.05) * visible;
+        double own = (facing * facing + 0.2) * visible;
         if (own < 0.2) own = own * own * own / 0.04;
         weight *= std::max(own, 1e-4);
         weights += weight;
-        sum += weight * glm::dvec3{lookupIrradiance(probe.irradiance, field.info.resolution.irradiance, point.normal)};
+        sum += weight * glm::sqrt(glm::dvec3{lookupIrradiance(probe.irradiance, field.info.resolution.irradiance, point.normal)});
     }
-    return glm::vec3{sum / weights};
+    return glm::vec3{sum / weights * (sum / weights)};
 }
 
 TEST_F(ProbeLookupTest, CompactLayerIsWhatItsTwinComputes) {

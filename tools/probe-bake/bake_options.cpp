@@ -72,6 +72,10 @@ void addLightOptions(CLI::App& command, BakeOptions& options) {
         ->group(kBaking);
     command.add_option("--seed", options.seed, "of the random numbers (default 0)")->option_text("N")->group(kBaking);
     command
+        .add_flag("--filter,!--no-filter", options.filter,
+                  "take noise out of the light maps (default); else each texel has its own paths only")
+        ->group(kBaking);
+    command
         .add_flag("--relocate,!--no-relocate", options.relocate,
                   "move probes out of solids (default); else they are inactive")
         ->group(kBaking);
@@ -168,6 +172,7 @@ tl::expected<BakeSettings, std::string> settingsOf(const BakeOptions& options, s
     if (options.noise) settings.noiseTarget = static_cast<float>(*options.noise);
     settings.maxBounces = options.bounces;
     settings.seed = options.seed;
+    settings.filter = options.filter;
     settings.relocate = options.relocate;
     settings.resume = options.resume;
     settings.force = options.force;

@@ -27,6 +27,7 @@ struct BakeOptions {
     std::string depfile;
     bool listDevices = false;
     bool resume = false;
+    bool filter = true;
     bool relocate = true;
     bool force = false;
     bool explain = false;

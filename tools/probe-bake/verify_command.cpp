@@ -15,6 +15,8 @@
 #include "probe-bake/bake_options.hpp"
 #include "probe-bake/commands.hpp"
 #include "probe-bake/picture_file.hpp"
+#include "probe-bake/reference_store.hpp"
+#include "probe-bake/verify_report.hpp"
 
 namespace pfvox::tools {
 
@@ -27,7 +29,8 @@ struct VerifyOptions {
     std::vector<std::string> inputs;  ///< scene, probe file
     std::vector<std::string> cameras;
     std::string size = "320x180";
-    std::uint32_t samples = 256;
+    std::uint32_t samples = VerifySettings{}.samples;
+    std::string references;
     std::string output;
     std::string device;
     bool compact = false;
@@ -89,26 +92,6 @@ float voxelMetresOf(const LoadedScene& scene) {
     return std::isfinite(smallest) && smallest > 0.0 ? static_cast<float>(smallest) : 0.1f;
 }
 
-Json scoreJson(const Camera& camera, const VerifiedPicture& picture, const VerifyScore& score) {
-    Json tiers;
-    for (std::size_t i = 0; i < gpu::kProbeTierCount; ++i)
-        tiers[std::string(toString(static_cast<gpu::ProbeTier>(i)))] = score.tierShares[i];
-    return {{"camera", camera.name},
-            {"width", picture.width},
-            {"height", picture.height},
-            {"surfacePixels", score.surfacePixels},
-            {"withoutValue", score.withoutValue},
-            {"tierShares", tiers},
-            {"meanReference", score.meanReference},
-            {"rmse", score.rmse},
-            {"relativeRmse", score.relativeRmse},
-            {"relativeTexelRmse", score.relativeTexelRmse},
-            {"relativeNoise", score.relativeNoise},
-            {"psnrDecibel", score.psnrDecibel},
-            {"meanFlip", score.meanFlip},
-            {"gpuMs", picture.gpuMs}};
-}
-
 Result<void> writePictures(const std::string& folder, const Camera& camera, const VerifiedPicture& picture,
                            const VerifyScore& score) {
     constexpr std::array<glm::vec3, gpu::kProbeTierCount> kTierColours{{{1.0f, 0.0f, 1.0f},
@@ -168,11 +151,15 @@ class VerifyRun {
                                       .height = size_.y,
                                       .samples = options_.samples,
                                       .maxBounces = bounces == 0 ? VerifySettings{}.maxBounces : bounces};
+        const ReferenceStore store(options_.references, reader.info().sceneHash);
         for (const Camera& camera : cameras) {
             reporter_.progress(fmt::format("camera {}", camera.name));
-            PFVOX_TRY(const VerifiedPicture, picture,
-                      verifier.render(device, {loaded, scene, probes, camera}, settings));
+            const VerifyInput input{loaded, scene, probes, camera};
+            PFVOX_TRY(const ReferencePicture, reference,
+                      store.fetch(camera, settings, [&] { return verifier.trace(device, input, settings); }));
+            PFVOX_TRY(const VerifiedPicture, picture, verifier.lookUp(device, input, reference));
             const VerifyScore score = scoreOf(picture);
+            reporter_.clearProgress();
             report(camera, picture, score);
             if (!options_.output.empty()) PFVOX_CHECK(writePictures(options_.output, camera, picture, score));
         }
@@ -185,8 +172,10 @@ class VerifyRun {
         const auto tier = [&](gpu::ProbeTier t) { return percent(score.tierShares[static_cast<std::size_t>(t)]); };
         table_.addRow({camera.name, formatCount(score.surfacePixels), formatCount(score.withoutValue),
                        tier(gpu::ProbeTier::Texels), tier(gpu::ProbeTier::Compact), tier(gpu::ProbeTier::Nearest),
-                       percent(score.relativeRmse), percent(score.relativeTexelRmse), percent(score.relativeNoise),
-                       fmt::format("{:.2f}", score.psnrDecibel), fmt::format("{:.4f}", score.meanFlip)});
+                       percent(score.all.relativeRmse), percent(score.all.relativeNoise),
+                       percent(score.all.relativeError), percent(score.texels().relativeError),
+                       fmt::format("{:.2f}", score.psnrDecibel), fmt::format("{:.4f}", score.meanFlip),
+                       fmt::format("{:.4f}", score.noiseFlip)});
         const auto add = [&](std::string what) {
             complaint_ += (complaint_.empty() ? "" : "; ") + camera.name + ": " + std::move(what);
         };
@@ -194,8 +183,8 @@ class VerifyRun {
             withoutValue_ = true;
             add(plural(score.withoutValue, "pixel") + " without value");
         }
-        if (options_.maxRmsePercent && 100.0 * score.relativeRmse > *options_.maxRmsePercent)
-            add("RMSE " + percent(score.relativeRmse));
+        if (options_.maxRmsePercent && 100.0 * score.all.relativeRmse > *options_.maxRmsePercent)
+            add("RMSE " + percent(score.all.relativeRmse));
         if (options_.maxFlip && score.meanFlip > *options_.maxFlip) add(fmt::format("FLIP {:.4f}", score.meanFlip));
     }
 
@@ -210,10 +199,12 @@ class VerifyRun {
                   {"compact", Align::Right},
                   {"nearest", Align::Right},
                   {"RMSE/mean", Align::Right},
-                  {"of texels", Align::Right},
                   {"noise", Align::Right},
+                  {"without it", Align::Right},
+                  {"of texels", Align::Right},
                   {"PSNR, dB", Align::Right},
-                  {"FLIP", Align::Right}}};
+                  {"FLIP", Align::Right},
+                  {"noise's", Align::Right}}};
     std::string complaint_;
     bool withoutValue_ = false;
 };
@@ -251,9 +242,14 @@ Command makeVerifyCommand(CLI::App& tool) {
         ->take_all()
         ->group(kVerifying);
     command.add_option("--size", options->size, "of the pictures (default 320x180)")->option_text("WxH")->group(kVerifying);
-    command.add_option("--samples", options->samples, "paths a pixel of the reference, 2 to 65536 (default 256)")
+    command.add_option("--samples", options->samples, "paths a pixel of the reference, 2 to 65536 (default 1024)")
         ->option_text("N")
         ->check(numberFrom(2, 65536))
+        ->group(kVerifying);
+    command
+        .add_option("--references", options->references,
+                    "folder of references: those there are not traced again, others are added")
+        ->option_text("FOLDER")
         ->group(kVerifying);
     command.add_flag("--compact", options->compact, "look at the small maps only")->group(kVerifying);
     command.add_option("--max-rmse", options->maxRmsePercent, "fail when RMSE / mean of a camera is above, percent")

@@ -44,6 +44,7 @@ struct BakeSettings {
     LightSampling sampling = LightSampling::Combined;
     bool stratified = true;  ///< Sobol points for the first two vertices; false, for tests: hashes for all
     bool relocate = true;   ///< move probes out of solids; false: those that touch one are inactive
+    bool filter = true;     ///< take noise out of the light maps (docs/baking.md); false: each texel has its own paths only
     bool proximity = true;  ///< make the proximity grid; shards have none
     int zstdLevel = 1;      ///< 1 to 19
     bool resume = false;    ///< take finished probes from the journal beside the output

@@ -1,8 +1,9 @@
 // Verify: a picture of the indirect light from a probe field beside one from path tracing, and how far they are apart.
 //
-//     scene, probes, camera -> [ProbeVerifier::render] -> VerifiedPicture -> [scoreOf] -> VerifyScore
+//     scene, camera -> [ProbeVerifier::trace] -> ReferencePicture
+//     that, probes  -> [ProbeVerifier::lookUp] -> VerifiedPicture -> [scoreOf] -> VerifyScore
 //
-// Both pictures show I = E / pi, not what materials make of it. Lengths are metres, light is linear RGB.
+// A reference does for every field of its scene. Both pictures show I = E / pi, not what materials make of it. Lengths are metres, light is linear RGB.
 #pragma once
 
 #include <array>
@@ -17,8 +18,17 @@ namespace pfvox {
 struct VerifySettings {
     std::uint32_t width = 320;
     std::uint32_t height = 180;
-    std::uint32_t samples = 256;        ///< paths a pixel of the reference
+    std::uint32_t samples = 1024;       ///< paths a pixel of the reference
     std::uint32_t maxBounces = 128;     ///< as the field was baked
+};
+
+/// Sums of I over the samples of even and of odd number; w: how many. Rows from the top.
+struct ReferencePicture {
+    std::uint32_t width = 0;
+    std::uint32_t height = 0;
+    std::vector<glm::vec4> even;
+    std::vector<glm::vec4> odd;
+    double gpuMs = 0.0;
 };
 
 struct VerifiedPixel {
@@ -26,6 +36,7 @@ struct VerifiedPixel {
     glm::vec3 reference{0.0f};
     glm::vec3 noise{0.0f};  ///< half the difference of two halves of the reference's samples
     gpu::ProbeTier tier = gpu::ProbeTier::None;
+    MaterialType material = MaterialType::Diffuse;
     bool surface = false;   ///< else the camera sees nothing here, and the rest is empty
 };
 
@@ -36,20 +47,33 @@ struct VerifiedPicture {
     double gpuMs = 0.0;
 };
 
+/// Some of the pixels of a picture. Shares are of the mean of their reference, all channels.
+struct VerifyPart {
+    std::uint64_t pixels = 0;
+    double meanReference = 0.0;
+    double rmse = 0.0;
+    double relativeRmse = 0.0;
+    double relativeNoise = 0.0;  ///< of the reference, from its halves
+    double relativeError = 0.0;  ///< of the probes alone: sqrt(RMSE^2 - noise^2), 0 where that is negative
+    double relativeBias = 0.0;   ///< mean of lookup - reference: brighter or darker as a whole
+};
+
+inline constexpr std::size_t kMaterialTypeCount = 7;
+
 struct VerifyScore {
     std::uint64_t surfacePixels = 0;
     std::uint64_t withoutValue = 0;  ///< of these: no tier, or not finite
     std::array<double, gpu::kProbeTierCount> tierShares{};
-    double meanReference = 0.0;      ///< of all channels
-    double rmse = 0.0;
-    double relativeRmse = 0.0;       ///< over the mean of the reference
-    double relativeTexelRmse = 0.0;  ///< of the pixels of tier Texels, over their mean
-    double relativeNoise = 0.0;      ///< what of it the noise of the reference explains
+    VerifyPart all;
+    std::array<VerifyPart, gpu::kProbeTierCount> byTier;
+    std::array<VerifyPart, kMaterialTypeCount> byMaterial;  ///< of the surface that is seen
     double exposure = 1.0;           ///< for PSNR and FLIP: 0.5 / mean
     double psnrDecibel = 0.0;        ///< of exposed values clamped to [0, 1]; 999 when they are equal
     double meanFlip = 0.0;           ///< over pixels with surface
+    double noiseFlip = 0.0;          ///< what the noise of the reference alone makes of it
     std::vector<float> flip;         ///< of all pixels
     std::uint64_t tierPixels(gpu::ProbeTier tier) const;
+    const VerifyPart& texels() const { return byTier[static_cast<std::size_t>(gpu::ProbeTier::Texels)]; }
 };
 
 /// What is looked at; all of it outlives the call.
@@ -65,7 +89,14 @@ class ProbeVerifier {
     /// Errors: those of Device::createProgram.
     static Result<ProbeVerifier> create(gpu::Device& device);
 
-    /// Device work is cut into pieces of some rows and samples. Errors: GpuOutOfMemory, GpuLost.
+    /// Does not look at the probes. Device work is cut into pieces of some rows and samples. Errors: GpuOutOfMemory,
+    /// GpuLost.
+    Result<ReferencePicture> trace(gpu::Device& device, const VerifyInput& input, const VerifySettings& settings) const;
+
+    /// The size of the picture is the reference's. Errors: GpuOutOfMemory, GpuLost.
+    Result<VerifiedPicture> lookUp(gpu::Device& device, const VerifyInput& input, const ReferencePicture& reference) const;
+
+    /// Both. Errors: theirs.
     Result<VerifiedPicture> render(gpu::Device& device, const VerifyInput& input,
                                    const VerifySettings& settings) const;
 

@@ -188,7 +188,9 @@ class Baker {
     Result<void> writeOne(std::uint32_t probe, const ContentKey& input, const ProbeRecord& record,
                           const TracedProbe& traced, ProbeFileWriter& writer, Background& background) const {
         const auto began = Clock::now();
-        ProbeData data = makeMaps(traced, info_.resolution, info_.grid.momentRange());
+        ProbeData data = makeMaps(traced, {.resolution = info_.resolution,
+                                           .momentRange = info_.grid.momentRange(),
+                                           .filterVoxelMetres = settings_.filter ? finestVoxelMetres(models_) : 0.0f});
         const double mapsMs = 1e3 * secondsSince(began);
         data.record = record;
         data.inputHash = input;

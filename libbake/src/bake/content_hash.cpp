@@ -12,7 +12,7 @@ namespace pfvox {
 namespace {
 
 /// Raised when the same inputs give another result for a reason that is not in the shaders.
-constexpr std::uint32_t kBakeVersion = 1;
+constexpr std::uint32_t kBakeVersion = 2;
 
 class Hasher {
   public:
@@ -125,6 +125,7 @@ ContentKey fieldHash(const ProbeFieldInfo& info, const BakeSettings& settings) {
     hasher.add(settings.maxBounces.value_or(0xffffffffu));
     hasher.add(static_cast<std::uint8_t>(settings.sampling)).add(std::uint8_t{settings.relocate});
     hasher.add(std::uint8_t{settings.stratified});
+    hasher.add(std::uint8_t{settings.filter});
     return hasher.key();
 }
 

@@ -1,6 +1,8 @@
 #include "bake/placed_models.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace pfvox::bake {
 
@@ -29,6 +31,13 @@ std::vector<PlacedModel> placedModels(const LoadedScene& scene) {
         }
     }
     return placed;
+}
+
+float finestVoxelMetres(const std::vector<PlacedModel>& models) {
+    double finest = std::numeric_limits<double>::infinity();
+    for (const PlacedModel& placed : models)
+        for (int axis = 0; axis < 3; ++axis) finest = std::min(finest, glm::length(glm::dvec3(placed.worldFromModel[axis])));
+    return std::isfinite(finest) ? static_cast<float>(finest) : 0.0f;
 }
 
 }  // namespace pfvox::bake

@@ -16,4 +16,7 @@ struct PlacedModel {
 
 std::vector<PlacedModel> placedModels(const LoadedScene& scene);
 
+/// The shortest edge of a voxel in the world; 0 without models.
+float finestVoxelMetres(const std::vector<PlacedModel>& models);
+
 }  // namespace pfvox::bake

@@ -4,9 +4,28 @@
 #include <pfvox/probe_layers.hpp>
 #include <pfvox/probe_maths.hpp>
 
+#include "filter/light_filter.hpp"
+
 namespace pfvox::bake {
 
-ProbeData makeMaps(const TracedProbe& traced, const ProbeResolution& resolution, float momentRange) {
+namespace {
+
+std::vector<glm::vec3> storedLight(const TracedProbe& traced, const MapSettings& settings) {
+    if (settings.filterVoxelMetres <= 0.0f) return traced.light;
+    return filter::filterLight({.words = traced.words,
+                                .metres = traced.metres,
+                                .depthEdge = traced.edges.depth,
+                                .light = traced.light,
+                                .lightEdge = traced.edges.light,
+                                .errors = traced.errors,
+                                .voxelMetres = settings.filterVoxelMetres},
+                               {});
+}
+
+}  // namespace
+
+ProbeData makeMaps(const TracedProbe& traced, const MapSettings& settings) {
+    const ProbeResolution& resolution = settings.resolution;
     ProbeData data;
     if (resolution.depth != 0) {
         data.depthNormal = traced.words;
@@ -14,7 +33,7 @@ ProbeData makeMaps(const TracedProbe& traced, const ProbeResolution& resolution,
     }
     if (resolution.light != 0) {
         data.light.reserve(traced.light.size());
-        for (const glm::vec3& light : traced.light) data.light.push_back(packLight(light));
+        for (const glm::vec3& light : storedLight(traced, settings)) data.light.push_back(packLight(light));
     }
     if (resolution.irradiance != 0)
         data.irradiance = irradianceLayer({.edge = traced.edges.light, .texels = traced.leaving}, resolution.irradiance);
@@ -22,7 +41,7 @@ ProbeData makeMaps(const TracedProbe& traced, const ProbeResolution& resolution,
         std::vector<float> metres = traced.metres;
         for (float& distance : metres)
             if (distance < 0.0f) distance = std::numeric_limits<float>::infinity();
-        data.moments = momentsLayer({.edge = traced.edges.depth, .texels = metres}, momentRange, resolution.moments);
+        data.moments = momentsLayer({.edge = traced.edges.depth, .texels = metres}, settings.momentRange, resolution.moments);
     }
     return data;
 }

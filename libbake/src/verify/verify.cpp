@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <pfvox/flip.hpp>
 #include <pfvox/verify.hpp>
 #include <pfvox_shaders/shaders.hpp>
 
@@ -47,70 +46,60 @@ shared::BakeScene bakeSceneOf(const VerifyInput& input, const VerifySettings& se
     return record;
 }
 
-VerifiedPixel pixelOf(const shared::VerifyPixel& pixel) {
+VerifiedPixel pixelOf(const shared::VerifyPixel& pixel, const glm::vec4& even, const glm::vec4& odd) {
     VerifiedPixel result;
     result.surface = pixel.lookup.w >= 0.0f;
     if (!result.surface) return result;
-    const glm::vec3 even = glm::vec3{pixel.even} / std::max(pixel.even.w, 1.0f);
-    const glm::vec3 odd = glm::vec3{pixel.odd} / std::max(pixel.odd.w, 1.0f);
     result.lookup = glm::vec3{pixel.lookup};
     result.tier = static_cast<gpu::ProbeTier>(pixel.lookup.w);
-    result.reference = glm::vec3{pixel.even + pixel.odd} / std::max(pixel.even.w + pixel.odd.w, 1.0f);
-    result.noise = 0.5f * (even - odd);
+    result.material = static_cast<MaterialType>(pixel.material);
+    result.reference = glm::vec3{even + odd} / std::max(even.w + odd.w, 1.0f);
+    result.noise = 0.5f * (glm::vec3{even} / std::max(even.w, 1.0f) - glm::vec3{odd} / std::max(odd.w, 1.0f));
     return result;
 }
 
-double squared(const glm::vec3& v) { return static_cast<double>(glm::dot(v, v)) / 3.0; }
-double mean(const glm::vec3& v) { return static_cast<double>(v.x + v.y + v.z) / 3.0; }
-bool isFinite(const glm::vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+std::uint32_t groupsOf(std::uint32_t edge) { return (edge + shared::kVerifyGroupEdge - 1) / shared::kVerifyGroupEdge; }
 
-/// Sums over pixels with a value.
-struct Sums {
-    double pixels = 0.0;
-    double reference = 0.0;
-    double error = 0.0;
-    double noise = 0.0;
+/// What a picture needs on the device.
+struct Canvas {
+    gpu::Buffer scene;
+    gpu::Buffer view;
+    gpu::Buffer pixels;
+    shared::VerifyPush push;
 
-    void add(const VerifiedPixel& pixel) {
-        pixels += 1.0;
-        reference += mean(pixel.reference);
-        error += squared(pixel.lookup - pixel.reference);
-        noise += squared(pixel.noise);
+    static Result<Canvas> create(gpu::Device& device, const VerifyInput& input, const VerifySettings& settings) {
+        const std::uint64_t bytes = std::uint64_t{settings.width} * settings.height * sizeof(shared::VerifyPixel);
+        PFVOX_TRY(gpu::Buffer, scene, device.createBuffer(sizeof(shared::BakeScene), "verify scene"));
+        PFVOX_TRY(gpu::Buffer, view, device.createBuffer(sizeof(shared::VerifyView), "verify view"));
+        PFVOX_TRY(gpu::Buffer, pixels, device.createBuffer(bytes, "verify pixels"));
+        PFVOX_CHECK(device.upload(scene, 0, gpu::bytesOf(bakeSceneOf(input, settings))));
+        PFVOX_CHECK(device.upload(view, 0, gpu::bytesOf(viewOf(input.camera, settings))));
+        const shared::VerifyPush push{.scene = scene.addressWords(),
+                                      .field = input.probes.address(),
+                                      .view = view.addressWords(),
+                                      .pixels = pixels.addressWords(),
+                                      .firstSample = 0,
+                                      .sampleCount = 0,
+                                      .firstRow = 0,
+                                      .reserved0 = 0};
+        return Canvas{std::move(scene), std::move(view), std::move(pixels), push};
     }
-    double rmse() const { return pixels > 0.0 ? std::sqrt(error / pixels) : 0.0; }
-    double relative(double sum) const {
-        return reference > 0.0 ? std::sqrt(sum / pixels) / (reference / pixels) : 0.0;
+
+    Result<double> launch(gpu::Device& device, const gpu::Program& program, glm::uvec2 size) const {
+        const gpu::Dispatch dispatch{.program = &program,
+                                     .pushConstants = gpu::bytesOf(push),
+                                     .groups = {groupsOf(size.x), groupsOf(size.y), 1}};
+        return device.run({&dispatch, 1});
+    }
+
+    Result<std::vector<shared::VerifyPixel>> download(gpu::Device& device, const VerifySettings& settings) const {
+        std::vector<shared::VerifyPixel> found(std::size_t{settings.width} * settings.height);
+        PFVOX_CHECK(device.download(pixels, 0, std::as_writable_bytes(std::span(found))));
+        return found;
     }
 };
 
-/// What PSNR and FLIP look at: both pictures, exposed alike.
-void compareExposed(const VerifiedPicture& picture, VerifyScore& score) {
-    std::vector<glm::vec3> reference;
-    std::vector<glm::vec3> test;
-    double error = 0.0;
-    for (const VerifiedPixel& pixel : picture.pixels) {
-        const auto exposed = [&](const glm::vec3& light) {
-            const glm::vec3 value = isFinite(light) ? light : glm::vec3{0.0f};
-            return glm::clamp(static_cast<float>(score.exposure) * value, 0.0f, 1.0f);
-        };
-        reference.push_back(exposed(pixel.reference));
-        test.push_back(exposed(pixel.lookup));
-        if (pixel.surface) error += squared(reference.back() - test.back());
-    }
-    const auto surfaces = static_cast<double>(std::max<std::uint64_t>(score.surfacePixels, 1));
-    score.psnrDecibel = error > 0.0 ? -10.0 * std::log10(error / surfaces) : 999.0;
-    score.flip = flipOf({.width = picture.width, .height = picture.height, .reference = reference, .test = test});
-    for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
-        if (picture.pixels[i].surface) score.meanFlip += static_cast<double>(score.flip[i]) / surfaces;
-    }
-}
-
 }  // namespace
-
-std::uint64_t VerifyScore::tierPixels(gpu::ProbeTier tier) const {
-    return static_cast<std::uint64_t>(
-        std::llround(tierShares[static_cast<std::size_t>(tier)] * static_cast<double>(surfacePixels)));
-}
 
 Result<ProbeVerifier> ProbeVerifier::create(gpu::Device& device) {
     const std::uint32_t hasGlass = 1;
@@ -119,72 +108,49 @@ Result<ProbeVerifier> ProbeVerifier::create(gpu::Device& device) {
     return ProbeVerifier(std::move(program));
 }
 
-Result<VerifiedPicture> ProbeVerifier::render(gpu::Device& device, const VerifyInput& input,
+Result<ReferencePicture> ProbeVerifier::trace(gpu::Device& device, const VerifyInput& input,
                                               const VerifySettings& settings) const {
-    std::vector<shared::VerifyPixel> found(std::size_t{settings.width} * settings.height);
-    PFVOX_TRY(const gpu::Buffer, scene, device.createBuffer(sizeof(shared::BakeScene), "verify scene"));
-    PFVOX_TRY(const gpu::Buffer, view, device.createBuffer(sizeof(shared::VerifyView), "verify view"));
-    PFVOX_TRY(const gpu::Buffer, pixels, device.createBuffer(std::span(found).size_bytes(), "verify pixels"));
-    PFVOX_CHECK(device.upload(scene, 0, gpu::bytesOf(bakeSceneOf(input, settings))));
-    PFVOX_CHECK(device.upload(view, 0, gpu::bytesOf(viewOf(input.camera, settings))));
-
-    shared::VerifyPush push{.scene = scene.addressWords(),
-                            .field = input.probes.address(),
-                            .view = view.addressWords(),
-                            .pixels = pixels.addressWords(),
-                            .firstSample = 0,
-                            .sampleCount = 0,
-                            .firstRow = 0,
-                            .reserved0 = 0};
-    VerifiedPicture picture{.width = settings.width, .height = settings.height, .pixels = {}};
-    const auto groups = [](std::uint32_t edge) { return (edge + shared::kVerifyGroupEdge - 1) / shared::kVerifyGroupEdge; };
-    const auto launch = [&](std::uint32_t rows) -> Result<void> {
-        const gpu::Dispatch dispatch{.program = &program_,
-                                     .pushConstants = gpu::bytesOf(push),
-                                     .groups = {groups(settings.width), groups(rows), 1}};
-        PFVOX_TRY(const double, gpuMs, device.run({&dispatch, 1}));
-        picture.gpuMs += gpuMs;
-        return {};
-    };
-    PFVOX_CHECK(launch(settings.height));
+    PFVOX_TRY(Canvas, canvas, Canvas::create(device, input, settings));
+    const std::vector<shared::VerifyPixel> none(std::size_t{settings.width} * settings.height);
+    PFVOX_CHECK(device.upload(canvas.pixels, 0, std::as_bytes(std::span(none))));
+    ReferencePicture picture{.width = settings.width, .height = settings.height, .even = {}, .odd = {}};
     const std::uint64_t fitting = kPathsPerDispatch / settings.width / shared::kVerifyGroupEdge;
     const auto perDispatch = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(fitting, 1, settings.samples));
+    shared::VerifyPush& push = canvas.push;
     for (push.firstSample = 0; push.firstSample < settings.samples; push.firstSample += perDispatch) {
         push.sampleCount = std::min(perDispatch, settings.samples - push.firstSample);
-        for (push.firstRow = 0; push.firstRow < settings.height; push.firstRow += shared::kVerifyGroupEdge)
-            PFVOX_CHECK(launch(shared::kVerifyGroupEdge));
+        for (push.firstRow = 0; push.firstRow < settings.height; push.firstRow += shared::kVerifyGroupEdge) {
+            PFVOX_TRY(const double, gpuMs, canvas.launch(device, program_, {settings.width, shared::kVerifyGroupEdge}));
+            picture.gpuMs += gpuMs;
+        }
     }
-    PFVOX_CHECK(device.download(pixels, 0, std::as_writable_bytes(std::span(found))));
-    picture.pixels.resize(found.size());
-    std::ranges::transform(found, picture.pixels.begin(), pixelOf);
+    PFVOX_TRY(const std::vector<shared::VerifyPixel>, found, canvas.download(device, settings));
+    for (const shared::VerifyPixel& pixel : found) {
+        picture.even.push_back(pixel.even);
+        picture.odd.push_back(pixel.odd);
+    }
     return picture;
 }
 
-VerifyScore scoreOf(const VerifiedPicture& picture) {
-    VerifyScore score;
-    Sums all;
-    Sums texels;
-    for (const VerifiedPixel& pixel : picture.pixels) {
-        if (!pixel.surface) continue;
-        ++score.surfacePixels;
-        score.tierShares[static_cast<std::size_t>(pixel.tier)] += 1.0;
-        if (pixel.tier == gpu::ProbeTier::None || !isFinite(pixel.lookup) || !isFinite(pixel.reference)) {
-            ++score.withoutValue;
-            continue;
-        }
-        all.add(pixel);
-        if (pixel.tier == gpu::ProbeTier::Texels) texels.add(pixel);
-    }
-    if (score.surfacePixels == 0) return score;
-    for (double& share : score.tierShares) share /= static_cast<double>(score.surfacePixels);
-    score.meanReference = all.pixels > 0.0 ? all.reference / all.pixels : 0.0;
-    score.rmse = all.rmse();
-    score.relativeRmse = all.relative(all.error);
-    score.relativeNoise = all.relative(all.noise);
-    score.relativeTexelRmse = texels.pixels > 0.0 ? texels.relative(texels.error) : 0.0;
-    score.exposure = score.meanReference > 0.0 ? 0.5 / score.meanReference : 1.0;
-    compareExposed(picture, score);
-    return score;
+Result<VerifiedPicture> ProbeVerifier::lookUp(gpu::Device& device, const VerifyInput& input,
+                                              const ReferencePicture& reference) const {
+    const VerifySettings settings{.width = reference.width, .height = reference.height};
+    PFVOX_TRY(const Canvas, canvas, Canvas::create(device, input, settings));
+    VerifiedPicture picture{.width = reference.width, .height = reference.height, .pixels = {}};
+    PFVOX_TRY(const double, gpuMs, canvas.launch(device, program_, {reference.width, reference.height}));
+    picture.gpuMs = gpuMs;
+    PFVOX_TRY(const std::vector<shared::VerifyPixel>, found, canvas.download(device, settings));
+    for (std::size_t i = 0; i < found.size(); ++i)
+        picture.pixels.push_back(pixelOf(found[i], reference.even[i], reference.odd[i]));
+    return picture;
+}
+
+Result<VerifiedPicture> ProbeVerifier::render(gpu::Device& device, const VerifyInput& input,
+                                              const VerifySettings& settings) const {
+    PFVOX_TRY(const ReferencePicture, reference, trace(device, input, settings));
+    PFVOX_TRY(VerifiedPicture, picture, lookUp(device, input, reference));
+    picture.gpuMs += reference.gpuMs;
+    return picture;
 }
 
 }  // namespace pfvox

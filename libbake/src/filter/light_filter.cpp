@@ -1,0 +1,197 @@
+#include "filter/light_filter.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <pfvox/assert.hpp>
+#include <pfvox/probe_maths.hpp>
+
+namespace pfvox::filter {
+
+namespace {
+
+constexpr std::array<float, 3> kSpline{6.0f / 16, 4.0f / 16, 1.0f / 16};  // by distance from the middle
+constexpr float kMinNormalDot = 0.9f;
+
+/// What a texel of the light map shows: the plane of the depth texels below it, where they have one.
+struct Patch {
+    glm::vec3 position{0.0f};  ///< from the probe, metres
+    glm::vec3 normal{0.0f};
+    bool plane = false;
+};
+
+float brightness(const glm::vec3& c) { return (c.x + c.y + c.z) / 3.0f; }
+
+/// The texel at any distance over the borders of the map: each of them is folded in its middle.
+glm::ivec2 wrapped(glm::ivec2 texel, int edge) {
+    if (texel.x < 0 || texel.x >= edge) texel = {texel.x < 0 ? -1 - texel.x : 2 * edge - 1 - texel.x, edge - 1 - texel.y};
+    if (texel.y < 0 || texel.y >= edge) texel = {edge - 1 - texel.x, texel.y < 0 ? -1 - texel.y : 2 * edge - 1 - texel.y};
+    return glm::clamp(texel, 0, edge - 1);
+}
+
+class Filter {
+  public:
+    Filter(const LightMap& map, const LightFilterSettings& settings)
+        : map_(map), settings_(settings), edge_(static_cast<int>(map.lightEdge)), light_(map.light.begin(), map.light.end()) {
+        const float reach = settings.reachVoxels * map.voxelMetres;
+        inverseReachSquared_ = 1.0f / (reach * reach);
+        findPatches();
+        setVariance();
+    }
+
+    std::vector<glm::vec3> run() {
+        const int passes = std::max(2, static_cast<int>(std::bit_width(map_.lightEdge)) - 6);  // texels are smaller where there are more
+        for (int pass = 0; pass < passes; ++pass) runPass(1 << pass);
+        return std::move(light_);
+    }
+
+  private:
+    std::size_t indexOf(glm::ivec2 texel) const {
+        return static_cast<std::size_t>(texel.x) + static_cast<std::size_t>(edge_) * static_cast<std::size_t>(texel.y);
+    }
+
+    void findPatches() {
+        const std::uint32_t block = map_.depthEdge / map_.lightEdge;
+        patches_.resize(light_.size());
+        for (std::uint32_t y = 0; y < map_.lightEdge; ++y)
+            for (std::uint32_t x = 0; x < map_.lightEdge; ++x)
+                patches_[x + std::size_t{map_.lightEdge} * y] = patchOf({x * block, y * block}, block);
+    }
+
+    Patch patchOf(glm::uvec2 first, std::uint32_t block) const {
+        Patch patch;
+        glm::vec3 sum{0.0f};
+        for (std::uint32_t i = 0; i < block * block; ++i) {
+            const std::uint32_t x = first.x + i % block;
+            const std::uint32_t y = first.y + i / block;
+            const std::size_t index = x + std::size_t{map_.depthEdge} * y;
+            if (map_.metres[index] < 0.0f) return {};
+            const Patch part{.position = map_.metres[index] * directionOfTexel(x, y, map_.depthEdge),
+                             .normal = normalOf(map_.words[index]),
+                             .plane = true};
+            if (i == 0) patch = part;
+            if (!onOnePlane(patch, part)) return {};
+            sum += part.position;
+        }
+        patch.position = sum / static_cast<float>(block * block);
+        return patch;
+    }
+
+    bool onOnePlane(const Patch& a, const Patch& b) const {
+        const float height = std::abs(glm::dot(b.position - a.position, a.normal));
+        return height < settings_.planeVoxels * map_.voxelMetres && glm::dot(a.normal, b.normal) > kMinNormalDot;
+    }
+
+    /// Of the texels around on the same plane; they differ for the light as well, so it is rather too large.
+    float guessedVariance(glm::ivec2 texel) const {
+        float sum = 0.0f;
+        float squares = 0.0f;
+        float count = 0.0f;
+        forEachTap<2>(texel, 1, [&](std::size_t to, float) {
+            const float value = brightness(light_[to]);
+            sum += value;
+            squares += value * value;
+            count += 1.0f;
+        });
+        if (count < 2.0f) return 0.0f;
+        const float mean = sum / count;
+        return std::max(squares / count - mean * mean, 0.0f) * count / (count - 1.0f);
+    }
+
+    void setVariance() {
+        variance_.resize(light_.size());
+        forEachTexel([&](glm::ivec2 texel, std::size_t at) {
+            const float error = map_.errors.empty() ? 0.0f : map_.errors[at];
+            variance_[at] = error > 0.0f ? error * error : guessedVariance(texel);
+        });
+    }
+
+    template <class Visit>
+    void forEachTexel(const Visit& visit) const {
+        for (int y = 0; y < edge_; ++y) {
+            for (int x = 0; x < edge_; ++x) {
+                const std::size_t at = indexOf({x, y});
+                if (patches_[at].plane) visit(glm::ivec2{x, y}, at);
+            }
+        }
+    }
+
+    /// Calls `visit` with each tap on the plane of the texel, itself included, and its weight by place.
+    template <int kRadius, class Visit>
+    void forEachTap(glm::ivec2 texel, int step, const Visit& visit) const {
+        const Patch& patch = patches_[indexOf(texel)];
+        const int margin = kRadius * step;
+        const bool inside = glm::all(glm::greaterThanEqual(texel, glm::ivec2{margin})) &&
+                            glm::all(glm::lessThan(texel, glm::ivec2{edge_ - margin}));
+        for (int j = -kRadius; j <= kRadius; ++j) {
+            for (int i = -kRadius; i <= kRadius; ++i) {
+                const glm::ivec2 place = texel + step * glm::ivec2{i, j};
+                const std::size_t to = indexOf(inside ? place : wrapped(place, edge_));
+                const Patch& other = patches_[to];
+                if (!other.plane || !onOnePlane(patch, other)) continue;
+                const glm::vec3 apart = other.position - patch.position;
+                const float near = 1.0f / (1.0f + glm::dot(apart, apart) * inverseReachSquared_);
+                visit(to, kSpline[static_cast<std::size_t>(std::abs(i))] * kSpline[static_cast<std::size_t>(std::abs(j))] * near * near);
+            }
+        }
+    }
+
+    void runPass(int step) {
+        const std::vector<glm::vec3> light = light_;
+        const std::vector<float> variance = smoothedVariance();
+        const float scale = settings_.noiseScale * settings_.noiseScale;
+        std::vector<float> carried(variance_.size());
+        forEachTexel([&](glm::ivec2 texel, std::size_t at) {
+            glm::vec3 sum{0.0f};
+            float weights = 0.0f;
+            float squares = 0.0f;
+            const float own = brightness(light[at]);
+            forEachTap<2>(texel, step, [&](std::size_t to, float near) {
+                const float apart = brightness(light[to]) - own;
+                const float noise = scale * (variance[at] + variance[to]) + 1e-12f;
+                const float alike = noise / (noise + apart * apart);
+                const float weight = near * alike * alike;
+                sum += weight * light[to];
+                weights += weight;
+                squares += weight * weight * variance_[to];
+            });
+            light_[at] = sum / weights;
+            carried[at] = squares / (weights * weights);
+        });
+        variance_ = std::move(carried);
+    }
+
+    /// One texel's own figure is too uncertain to decide by.
+    std::vector<float> smoothedVariance() const {
+        std::vector<float> smooth(variance_.size());
+        forEachTexel([&](glm::ivec2 texel, std::size_t at) {
+            float sum = 0.0f;
+            float weights = 0.0f;
+            forEachTap<1>(texel, 1, [&](std::size_t to, float near) {
+                sum += near * variance_[to];
+                weights += near;
+            });
+            smooth[at] = sum / weights;
+        });
+        return smooth;
+    }
+
+    const LightMap& map_;
+    LightFilterSettings settings_;
+    int edge_;
+    float inverseReachSquared_ = 0.0f;
+    std::vector<Patch> patches_;
+    std::vector<glm::vec3> light_;
+    std::vector<float> variance_;
+};
+
+}  // namespace
+
+std::vector<glm::vec3> filterLight(const LightMap& map, const LightFilterSettings& settings) {
+    PFVOX_ASSERT(map.light.size() == std::size_t{map.lightEdge} * map.lightEdge);
+    PFVOX_ASSERT(map.lightEdge != 0 && map.depthEdge % map.lightEdge == 0);
+    return Filter(map, settings).run();
+}
+
+}  // namespace pfvox::filter
