@@ -92,6 +92,7 @@ void addRunOptions(CLI::App& command, BakeOptions& options) {
         ->group(kBaking);
     command.add_option("--depfile", options.depfile, "write what the output was made from, for make and ninja")
         ->option_text("FILE")
+        ->check(suggestFiles({".d"}))
         ->group(group::kBuild);
     command.add_flag("--if-changed", options.ifChanged, "keep the time stamp of an output that stays the same (ninja)")
         ->group(group::kBuild);
@@ -108,9 +109,12 @@ void addDeviceOption(CLI::App& command, std::string& device) {
 }
 
 void addBakeOptions(CLI::App& command, BakeOptions& options) {
-    command.add_option("input", options.input)->group(group::kInputOutput);
+    command.add_option("input", options.input)
+        ->check(suggestFiles({".toml", ".pf_vox"}))
+        ->group(group::kInputOutput);
     command.add_option("-o,--output", options.output, "the probe file (.pf_probe); required")
         ->option_text("FILE")
+        ->check(suggestFiles({kPfProbeExtension}))
         ->group(group::kInputOutput);
     command.add_flag("--force", options.force, "bake what is up to date, too")->group(group::kInputOutput);
     command.add_flag("--explain", options.explain, "say why it is baked or not")->group(group::kInputOutput);

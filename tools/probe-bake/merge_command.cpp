@@ -77,10 +77,11 @@ Command makeMergeCommand(CLI::App& tool) {
     command.add_option("-o,--output", options->output, "the joined file; required")
         ->option_text("FILE")
         ->required()
+        ->check(suggestFiles({kPfProbeExtension}))
         ->group(group::kInputOutput);
     command.add_flag("--allow-part", options->allowPart, "the shards need not make up the whole grid")
         ->group(group::kInputOutput);
-    addReadOptions(command, *options);
+    addReadOptions(command, *options, kPfProbeExtension);
     return {.app = &command, .run = [&command, options] { return runMerge(command, *options); }};
 }
 
