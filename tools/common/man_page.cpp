@@ -8,6 +8,8 @@ namespace pfvox::tools {
 
 namespace {
 
+constexpr std::size_t kLineBytes = 76;
+
 std::string escaped(const std::string& text) {
     std::string result;
     for (const char c : text) {
@@ -19,8 +21,24 @@ std::string escaped(const std::string& text) {
             result += c;
         }
     }
-    // A line that begins with one of these would be a request.
-    return result.starts_with('.') || result.starts_with('\'') ? "\\&" + result : result;
+    return result;
+}
+
+/// Running text in source lines of at most 78 bytes. A line that began with '.' or '\'' would be a request.
+std::string filled(const std::string& text) {
+    std::string lines;
+    std::string line;
+    const auto endLine = [&] {
+        if (line.starts_with('.') || line.starts_with('\'')) line.insert(0, "\\&");
+        if (!line.empty()) lines += line + "\n";
+        line.clear();
+    };
+    for (const std::string& word : CLI::detail::split(escaped(text), ' ')) {
+        if (line.size() + word.size() >= kLineBytes) endLine();
+        line += (line.empty() ? "" : " ") + word;
+    }
+    endLine();
+    return lines;
 }
 
 std::string upperCase(std::string text) {
@@ -29,22 +47,25 @@ std::string upperCase(std::string text) {
 }
 
 std::string sentence(const std::string& text) {
-    return escaped(text) + (text.ends_with('.') || text.empty() ? "" : ".") + "\n";
+    return filled(text.ends_with('.') ? text : text + ".");
 }
 
 std::string taggedOption(const OptionRow& option) {
     std::string tag;
     for (const std::string& name : option.names) tag += (tag.empty() ? "\\fB" : ", \\fB") + escaped(name) + "\\fR";
     if (!option.value.empty()) tag += " \\fI" + escaped(option.value) + "\\fR";
-    return ".TP\n" + tag + "\n" + sentence(option.meaning);
+    return ".TP\n" + tag + "\n" + filled(option.meaning);
 }
 
+/// Under the names of their groups when there are several.
 std::string optionList(const std::vector<OptionRow>& options) {
     std::string text;
-    const std::string* group = nullptr;
+    std::string group = options.empty() ? "" : options.front().group;
+    const bool isOneGroup = options.empty() || options.back().group == group;
+    if (!isOneGroup) group.clear();
     for (const OptionRow& option : options) {
-        if (group == nullptr || *group != option.group) text += ".PP\n" + escaped(option.group) + ":\n";
-        group = &option.group;
+        if (option.group != group) text += (text.empty() ? "" : ".PP\n") + filled(option.group + ":");
+        group = option.group;
         text += taggedOption(option);
     }
     return text;
@@ -70,7 +91,7 @@ std::string description(const CommandTable& command) {
 std::string exampleList(const std::vector<Example>& examples) {
     std::string text;
     for (const Example& example : examples)
-        text += ".TP\n\\fB" + escaped(example.command) + "\\fR\n" + sentence(example.meaning);
+        text += ".TP\n\\fB" + escaped(example.command) + "\\fR\n" + filled(example.meaning);
     return text;
 }
 
@@ -80,7 +101,7 @@ std::string commandSections(const CommandTable& tool, const std::vector<OptionRo
         std::vector<OptionRow> own = command.options;
         std::erase_if(own, [&](const OptionRow& option) { return std::ranges::find(common, option) != common.end(); });
         text += ".SS " + escaped(tool.name + " " + command.name) + "\n" + usageLines(command) + ".PP\n" +
-                description(command) + optionList(own);
+                description(command) + (own.empty() ? "" : ".PP\n") + optionList(own);
         if (!command.text.examples.empty())
             text += ".PP\nExamples:\n" + exampleList(command.text.examples);
     }
@@ -90,7 +111,7 @@ std::string commandSections(const CommandTable& tool, const std::vector<OptionRo
 std::string exitStatus(const CommandTable& tool) {
     std::string text = ".SH EXIT STATUS\n";
     for (const ExitCodeText& row : tool.exitCodes)
-        text += fmt::format(".TP\n\\fB{}\\fR\n{}", static_cast<int>(row.code), sentence(std::string(row.text)));
+        text += fmt::format(".TP\n\\fB{}\\fR\n{}", static_cast<int>(row.code), filled(std::string(row.text)));
     return text;
 }
 
@@ -109,7 +130,7 @@ std::string manPage(const CommandTable& tool) {
     std::string page = fmt::format(".\\\" Made by `{} --generate man` from the options of the program.\n", tool.name);
     page += fmt::format(".TH {} 1 {} \"pfvox {}\" \"pfvox manual\"\n", upperCase(escaped(tool.name)), PFVOX_MANUAL_DATE,
                         PFVOX_VERSION);
-    page += ".SH NAME\n" + escaped(tool.name) + " \\- " + escaped(shortSummary(tool)) + "\n";
+    page += ".SH NAME\n" + escaped(tool.name) + " \\- " + filled(shortSummary(tool));
     page += ".SH SYNOPSIS\n" + usageLines(tool);
     page += ".SH DESCRIPTION\n" + description(tool);
     if (tool.commands.empty()) {

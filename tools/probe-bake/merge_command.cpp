@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <pfvox/files.hpp>
 #include <pfvox/probe_file.hpp>
+#include <pfvox/shard_proximity.hpp>
 
 #include "common/file_visit.hpp"
 #include "common/inputs.hpp"
@@ -16,6 +18,7 @@ namespace {
 
 struct MergeOptions : ReadOptions {
     std::string output;
+    std::string scene;
     bool allowPart = false;
 };
 
@@ -23,7 +26,7 @@ HelpText helpText() {
     return {.summary = "Joins the shards of a bake, in any order, to the file that one bake would have written.",
             .usage = {"probe-bake merge [options] <shard.pf_probe | folder | @list | ->... -o <file.pf_probe>"},
             .examples = {{"probe-bake merge a.pf_probe b.pf_probe -o hall.pf_probe", "two shards"},
-                         {"probe-bake merge shards -o hall.pf_probe", "all shards of a folder"}}};
+                         {"probe-bake merge shards -o hall.pf_probe --scene hall.toml", "a folder of them; with the proximity grid"}}};
 }
 
 /// The content key that all shards share; none when they differ.
@@ -36,6 +39,28 @@ ContentKey commonKey(const std::vector<std::filesystem::path>& shards, const Lim
         common = reader->contentKey();
     }
     return common.value_or(ContentKey{});
+}
+
+/// The proximity grid, which shards cannot have: from the scene they were baked from. None without a scene or depth maps, and
+/// none when probes are missing or doubled, which the merge reports.
+Result<std::optional<ProximityGrid>> proximityFor(const MergeOptions& options,
+                                                  const std::vector<std::filesystem::path>& files, const Limits& limits,
+                                                  DiagnosticList& diagnostics) {
+    if (options.scene.empty()) return std::nullopt;
+    PFVOX_TRY(const LoadedScene, scene, loadScene(options.scene, limits, diagnostics));
+    std::vector<ProbeFileReader> shards;
+    for (const std::filesystem::path& file : files) {
+        DiagnosticList ignored;  // the merge reports them
+        PFVOX_TRY(ProbeFileReader, reader, ProbeFileReader::open(file, limits, ignored));
+        shards.push_back(std::move(reader));
+    }
+    if (!isWholeGrid(shards) || shards.front().info().resolution.depth == 0) return std::nullopt;
+    auto built = proximityOfShards(scene, shards);
+    if (!built) {
+        built.error().file = options.scene;
+        return tl::make_unexpected(std::move(built).error());
+    }
+    return std::move(built->grid);
 }
 
 ExitCode runMerge(const CLI::App& command, const MergeOptions& options) {
@@ -58,8 +83,10 @@ ExitCode runMerge(const CLI::App& command, const MergeOptions& options) {
 
     DiagnosticList diagnostics;
     const WriteGuard guard;
+    const auto proximity = proximityFor(options, shards, *limits, diagnostics);
+    if (!proximity) return stopWith(proximity.error());
     const ProbeMergeSettings settings{
-        .contentKey = commonKey(shards, *limits), .proximity = {}, .allowPart = options.allowPart};
+        .contentKey = commonKey(shards, *limits), .proximity = *proximity, .allowPart = options.allowPart};
     const auto merged = mergeProbeFields(shards, options.output, settings, *limits, diagnostics);
     reporter.diagnostics(options.output, diagnostics.entries());
     if (!merged) return stopWith(merged.error());
@@ -78,6 +105,10 @@ Command makeMergeCommand(CLI::App& tool) {
         ->option_text("FILE")
         ->required()
         ->check(suggestFiles({kPfProbeExtension}))
+        ->group(group::kInputOutput);
+    command.add_option("--scene", options->scene, "what was baked: makes the proximity grid, which shards cannot have")
+        ->option_text("SCENE")
+        ->check(suggestFiles({".toml", ".pf_vox"}))
         ->group(group::kInputOutput);
     command.add_flag("--allow-part", options->allowPart, "the shards need not make up the whole grid")
         ->group(group::kInputOutput);
