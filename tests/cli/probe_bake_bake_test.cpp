@@ -60,6 +60,11 @@ TEST_F(ProbeBakeScene, ShardsMergeToTheWhole) {
     EXPECT_NE(readText(folder / "whole.pf_probe"), readText(folder / "merged.pf_probe")) << "no proximity grid";
     ASSERT_EQ(run({"merge", "b.pf_probe", "a.pf_probe", "-o", "full.pf_probe", "--scene", "scene.toml"}).exitCode, 0);
     EXPECT_EQ(readText(folder / "whole.pf_probe"), readText(folder / "full.pf_probe"));
+    EXPECT_EQ(json::parse(run(tiny({"scene.toml", "-o", "full.pf_probe", "--json"})).out)["status"], "up-to-date");
+    EXPECT_EQ(json::parse(run(tiny({"scene.toml", "-o", "merged.pf_probe", "--json"})).out)["status"], "baked") << "no proximity grid";
+    const ProcessResult other = run(tiny({"scene.toml", "-o", "full.pf_probe", "--probes", "0:7", "--json", "--explain"}));
+    EXPECT_EQ(json::parse(other.out)["status"], "baked") << "other probes";
+    EXPECT_THAT(json::parse(other.out)["reason"], "the existing output holds other probes");
     writePfVox(folder / "box.pf_vox", boxAsset({{0, 0, 0}, {12, 7, 12}}, 0.1));
     const ProcessResult changed = run({"merge", "a.pf_probe", "b.pf_probe", "-o", "other.pf_probe", "--scene", "scene.toml"});
     EXPECT_EQ(changed.exitCode, 4);

@@ -57,14 +57,14 @@ std::string taggedOption(const OptionRow& option) {
     return ".TP\n" + tag + "\n" + filled(option.meaning);
 }
 
-/// Under the names of their groups when there are several.
-std::string optionList(const std::vector<OptionRow>& options) {
+/// Under the names of their groups when there are several. `afterText`: something stands before it in its section.
+std::string optionList(const std::vector<OptionRow>& options, bool afterText) {
     std::string text;
     std::string group = options.empty() ? "" : options.front().group;
     const bool isOneGroup = options.empty() || options.back().group == group;
     if (!isOneGroup) group.clear();
     for (const OptionRow& option : options) {
-        if (option.group != group) text += (text.empty() ? "" : ".PP\n") + filled(option.group + ":");
+        if (option.group != group) text += (afterText || !text.empty() ? ".PP\n" : "") + filled(option.group + ":");
         group = option.group;
         text += taggedOption(option);
     }
@@ -101,7 +101,7 @@ std::string commandSections(const CommandTable& tool, const std::vector<OptionRo
         std::vector<OptionRow> own = command.options;
         std::erase_if(own, [&](const OptionRow& option) { return std::ranges::find(common, option) != common.end(); });
         text += ".SS " + escaped(tool.name + " " + command.name) + "\n" + usageLines(command) + ".PP\n" +
-                description(command) + (own.empty() ? "" : ".PP\n") + optionList(own);
+                description(command) + optionList(own, true);
         if (!command.text.examples.empty())
             text += ".PP\nExamples:\n" + exampleList(command.text.examples);
     }
@@ -130,15 +130,15 @@ std::string manPage(const CommandTable& tool) {
     std::string page = fmt::format(".\\\" Made by `{} --generate man` from the options of the program.\n", tool.name);
     page += fmt::format(".TH {} 1 {} \"pfvox {}\" \"pfvox manual\"\n", upperCase(escaped(tool.name)), PFVOX_MANUAL_DATE,
                         PFVOX_VERSION);
-    page += ".SH NAME\n" + escaped(tool.name) + " \\- " + filled(shortSummary(tool));
+    page += ".SH NAME\n" + filled(tool.name + " - " + shortSummary(tool));
     page += ".SH SYNOPSIS\n" + usageLines(tool);
     page += ".SH DESCRIPTION\n" + description(tool);
     if (tool.commands.empty()) {
-        page += ".SH OPTIONS\n" + optionList(tool.options);
+        page += ".SH OPTIONS\n" + optionList(tool.options, false);
     } else {
         page += commandSections(tool, common);
-        page += ".SH OPTIONS OF ALL COMMANDS\n" + optionList(common);
-        page += ".SH OPTIONS WITHOUT A COMMAND\n" + optionList(tool.options);
+        page += ".SH OPTIONS OF ALL COMMANDS\n" + optionList(common, false);
+        page += ".SH OPTIONS WITHOUT A COMMAND\n" + optionList(tool.options, false);
     }
     if (!tool.text.examples.empty()) page += ".SH EXAMPLES\n" + exampleList(tool.text.examples);
     page += exitStatus(tool) + ".SH SEE ALSO\n";

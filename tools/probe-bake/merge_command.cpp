@@ -29,13 +29,14 @@ HelpText helpText() {
                          {"probe-bake merge shards -o hall.pf_probe --scene hall.toml", "a folder of them; with the proximity grid"}}};
 }
 
-/// The content key that all shards share; none when they differ.
-ContentKey commonKey(const std::vector<std::filesystem::path>& shards, const Limits& limits) {
+/// The content key that all shards share; none when they differ, or when the result lacks the proximity grid that a bake would
+/// have made: it must not count as up to date.
+ContentKey commonKey(const std::vector<std::filesystem::path>& shards, bool withProximity, const Limits& limits) {
     std::optional<ContentKey> common;
     for (const std::filesystem::path& shard : shards) {
         DiagnosticList ignored;  // the merge reports them
         const auto reader = ProbeFileReader::open(shard, limits, ignored);
-        if (!reader || (common && *common != reader->contentKey())) return {};
+        if (!reader || (!withProximity && reader->info().resolution.depth != 0) || (common && *common != reader->contentKey())) return {};
         common = reader->contentKey();
     }
     return common.value_or(ContentKey{});
@@ -86,7 +87,7 @@ ExitCode runMerge(const CLI::App& command, const MergeOptions& options) {
     const auto proximity = proximityFor(options, shards, *limits, diagnostics);
     if (!proximity) return stopWith(proximity.error());
     const ProbeMergeSettings settings{
-        .contentKey = commonKey(shards, *limits), .proximity = *proximity, .allowPart = options.allowPart};
+        .contentKey = commonKey(shards, proximity->has_value(), *limits), .proximity = *proximity, .allowPart = options.allowPart};
     const auto merged = mergeProbeFields(shards, options.output, settings, *limits, diagnostics);
     reporter.diagnostics(options.output, diagnostics.entries());
     if (!merged) return stopWith(merged.error());

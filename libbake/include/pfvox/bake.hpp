@@ -112,7 +112,7 @@ struct BakeReport {
 ContentKey sceneContentHash(const LoadedScene& scene);
 
 /// What a bake of this scene with these settings on this device puts into the header of its file: with an equal
-/// key and an output that holds it there is nothing to do.
+/// key and an output that holds it and the same probes there is nothing to do. Shards have the key of the whole.
 ContentKey bakeContentKey(const LoadedScene& scene, const BakeSettings& settings,
                           const gpu::DeviceInfo& device);
 
