@@ -13,35 +13,35 @@
 #include <vector>
 
 namespace pfvox {
-
+/// How pictures are taken and compared.
 struct VerifySettings {
-    std::uint32_t width = 320;
-    std::uint32_t height = 180;
-    std::uint32_t samples = 256;        ///< paths a pixel of the reference
-    std::uint32_t maxBounces = 128;     ///< as the field was baked
+    std::uint32_t width = 320;       ///< pixels
+    std::uint32_t height = 180;      ///< pixels
+    std::uint32_t samples = 256;     ///< paths a pixel of the reference
+    std::uint32_t maxBounces = 128;  ///< as the field was baked
 };
-
+/// One pixel, twice.
 struct VerifiedPixel {
-    glm::vec3 lookup{0.0f};
-    glm::vec3 reference{0.0f};
+    glm::vec3 lookup{0.0f};  ///< I out of the probes
+    glm::vec3 reference{0.0f};  ///< I by path tracing
     glm::vec3 noise{0.0f};  ///< half the difference of two halves of the reference's samples
-    gpu::ProbeTier tier = gpu::ProbeTier::None;
+    gpu::ProbeTier tier = gpu::ProbeTier::None;  ///< which lookup gave the value
     bool surface = false;   ///< else the camera sees nothing here, and the rest is empty
 };
-
+/// What one camera sees.
 struct VerifiedPicture {
-    std::uint32_t width = 0;
-    std::uint32_t height = 0;
+    std::uint32_t width = 0;            ///< pixels
+    std::uint32_t height = 0;           ///< pixels
     std::vector<VerifiedPixel> pixels;  ///< rows from the top
-    double gpuMs = 0.0;
+    double gpuMs = 0.0;                 ///< of both pictures
 };
-
+/// How far the probes are from the reference, over the pixels with surface.
 struct VerifyScore {
-    std::uint64_t surfacePixels = 0;
+    std::uint64_t surfacePixels = 0;  ///< pixels that the rest is about
     std::uint64_t withoutValue = 0;  ///< of these: no tier, or not finite
-    std::array<double, gpu::kProbeTierCount> tierShares{};
+    std::array<double, gpu::kProbeTierCount> tierShares{};  ///< of surface pixels, by tier
     double meanReference = 0.0;      ///< of all channels
-    double rmse = 0.0;
+    double rmse = 0.0;  ///< of I, all channels
     double relativeRmse = 0.0;       ///< over the mean of the reference
     double relativeTexelRmse = 0.0;  ///< of the pixels of tier Texels, over their mean
     double relativeNoise = 0.0;      ///< what of it the noise of the reference explains
@@ -49,17 +49,17 @@ struct VerifyScore {
     double psnrDecibel = 0.0;        ///< of exposed values clamped to [0, 1]; 999 when they are equal
     double meanFlip = 0.0;           ///< over pixels with surface
     std::vector<float> flip;         ///< of all pixels
-    std::uint64_t tierPixels(gpu::ProbeTier tier) const;
+    std::uint64_t tierPixels(gpu::ProbeTier tier) const;  ///< pixels whose value came from this tier
 };
 
 /// What is looked at; all of it outlives the call.
 struct VerifyInput {
-    const LoadedScene& loaded;  ///< sun and sky
-    const gpu::Scene& scene;
-    const gpu::GpuProbes& probes;
-    const Camera& camera;
+    const LoadedScene& loaded;     ///< sun and sky
+    const gpu::Scene& scene;       ///< what is seen
+    const gpu::GpuProbes& probes;  ///< baked from it
+    const Camera& camera;          ///< from where
 };
-
+/// Renders pictures both ways and compares them. Not thread-safe.
 class ProbeVerifier {
   public:
     /// Errors: those of Device::createProgram.
@@ -73,7 +73,7 @@ class ProbeVerifier {
     explicit ProbeVerifier(gpu::Program program) : program_(std::move(program)) {}
     gpu::Program program_;
 };
-
+/// Over the pixels with surface; all zero without any.
 VerifyScore scoreOf(const VerifiedPicture& picture);
 
 }  // namespace pfvox
