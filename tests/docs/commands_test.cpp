@@ -55,7 +55,9 @@ std::vector<DocCommand> commandsIn(const fs::path& document) {
         if (hasPrompt) text.erase(0, 2);
         text = withoutComment(text);
         const bool isShell = fence == "sh" || fence == "bash" || fence == "shell";
-        const bool isCommand = fence == "console" ? hasPrompt : isShell ? !text.empty() && text[0] != '#' : looksLikeCommand(text);
+        const bool isCommand = fence == "console" ? hasPrompt
+                               : isShell          ? !text.empty() && text[0] != '#'
+                                                  : fence.empty() && looksLikeCommand(text);
         if (isCommand) commands.push_back({document.generic_string() + ":" + std::to_string(number), text});
     }
     return commands;
@@ -100,7 +102,8 @@ class Workplace {
 
     ProcessResult run(const std::string& line) const {
         const std::string path = "PATH=" + (folder_ / "build/release/bin").string() + ":/usr/local/bin:/usr/bin:/bin";
-        return runProcess({"/bin/bash", "-euo", "pipefail", "-c", line}, {.environment = {path}, .input = {}, .folder = folder_.path()});
+        return runProcess({"/usr/bin/env", path, "/bin/bash", "-euo", "pipefail", "-c", line},
+                          {.environment = {}, .input = {}, .folder = folder_.path()});
     }
 
   private:
