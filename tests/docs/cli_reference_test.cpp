@@ -64,6 +64,7 @@ TEST(CliReference, NamesEveryOptionOfEveryCommand) {
 }
 
 TEST(CliReference, NamesNoOptionThatIsGone) {
+    if (builtTools().size() < 3) GTEST_SKIP() << "built without the GPU: not all options are known";
     std::set<std::string> known{"--generate"};
     for (const ToolCommand& it : everyCommand()) known.merge(optionsIn(help(it)));
     for (const std::string& option : optionsNamedIn(reference())) EXPECT_THAT(known, Contains(option));
