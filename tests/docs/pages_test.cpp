@@ -190,5 +190,19 @@ TEST_F(Completion, FishOffersCommandsOptionsAndWords) {
     EXPECT_THAT(fish("vox2pf info "), Contains("b b.pf_vox"));
 }
 
+TEST_F(Completion, ZshCompletesCommandsOptionsWordsAndFiles) {
+    if (!isInstalled("zsh")) GTEST_SKIP() << "no zsh here (Debian: zsh)";
+    const std::filesystem::path script = std::filesystem::path(PFVOX_TESTS_DIR) / "docs/zsh_completion.zsh";
+    std::vector<std::string> arguments{"timeout", "60", "zsh", "-f", script.string(), (kPages / "zsh").string()};
+    // What is wanted is more than what was typed: the terminal shows that, too.
+    const std::vector<std::string> steps{"vox2pf exp",         "export",     "vox2pf info --js",       "--json",
+                                         "vox2pf info b",      "b.pf_vox",     "vox2pf a.vox --profile r", "resident",
+                                         "vox2pf sc",          "scene.toml", "vox2pf a.vox --holl",     "--hollow"};
+    arguments.insert(arguments.end(), steps.begin(), steps.end());
+    const ProcessResult result =
+        runInstalled(arguments, {.environment = {"TERM=dumb"}, .input = {}, .folder = folder.path()});
+    EXPECT_EQ(result.exitCode, 0) << "it stopped after " << result.out << result.err;
+}
+
 }  // namespace
 }  // namespace pfvox::test

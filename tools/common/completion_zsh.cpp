@@ -24,7 +24,9 @@ std::string valueSpec(const OptionRow& row) {
     if (row.isFile && row.suffixes.empty()) {
         action = "_files -/";
     } else if (row.isFile) {
-        action = fmt::format("_files -g \"(*{})\"", fmt::join(row.suffixes, "|*"));
+        // Of one suffix without parentheses: "(*.x)" would be a glob qualifier.
+        const std::string glob = fmt::format("*{}", fmt::join(row.suffixes, "|*"));
+        action = fmt::format("_files -g \"{}\"", row.suffixes.size() == 1 ? glob : "(" + glob + ")");
     } else if (!row.words.empty()) {
         action = fmt::format("({})", fmt::join(row.words, " "));
     }
