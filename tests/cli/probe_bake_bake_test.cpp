@@ -57,8 +57,34 @@ TEST_F(ProbeBakeScene, ShardsMergeToTheWhole) {
     ASSERT_EQ(run({"merge", "a.pf_probe", "b.pf_probe", "-o", "merged.pf_probe"}).exitCode, 0);
     const ProcessResult compared = run({"compare", "--equal", "whole.pf_probe", "merged.pf_probe"});
     EXPECT_EQ(compared.exitCode, 0) << compared.out << compared.err;
+    EXPECT_NE(readText(folder / "whole.pf_probe"), readText(folder / "merged.pf_probe")) << "no proximity grid";
+    ASSERT_EQ(run({"merge", "b.pf_probe", "a.pf_probe", "-o", "full.pf_probe", "--scene", "scene.toml"}).exitCode, 0);
+    EXPECT_EQ(readText(folder / "whole.pf_probe"), readText(folder / "full.pf_probe"));
+    EXPECT_EQ(json::parse(run(tiny({"scene.toml", "-o", "full.pf_probe", "--json"})).out)["status"], "up-to-date");
+    EXPECT_EQ(json::parse(run(tiny({"scene.toml", "-o", "merged.pf_probe", "--json"})).out)["status"], "baked") << "no proximity grid";
+    const ProcessResult other = run(tiny({"scene.toml", "-o", "full.pf_probe", "--probes", "0:7", "--json", "--explain"}));
+    EXPECT_EQ(json::parse(other.out)["status"], "baked") << "other probes";
+    EXPECT_THAT(json::parse(other.out)["reason"], "the existing output holds other probes");
+    writePfVox(folder / "box.pf_vox", boxAsset({{0, 0, 0}, {12, 7, 12}}, 0.1));
+    const ProcessResult changed = run({"merge", "a.pf_probe", "b.pf_probe", "-o", "other.pf_probe", "--scene", "scene.toml"});
+    EXPECT_EQ(changed.exitCode, 4);
+    EXPECT_THAT(changed.err, HasSubstr("another scene"));
+    EXPECT_FALSE(std::filesystem::exists(folder / "other.pf_probe"));
     EXPECT_EQ(run(tiny({"scene.toml", "-o", "a.pf_probe", "--probes", "7:19"})).exitCode, 2);
     EXPECT_EQ(run(tiny({"scene.toml", "-o", "a.pf_probe", "--probes", "7"})).exitCode, 2);
+}
+
+TEST_F(ProbeBakeScene, PartsOfNMakeUpTheGrid) {
+    writeScene("scene.toml", "box.pf_vox", kGrid);
+    for (const char* part : {"0/4", "1/4", "2/4", "3/4"}) {
+        const std::string name = std::string("shards/") + part[0] + ".pf_probe";
+        std::filesystem::create_directories(folder / "shards");
+        ASSERT_EQ(run(tiny({"scene.toml", "-o", name, "--probes", part})).exitCode, 0) << part;
+    }
+    ASSERT_EQ(run({"merge", "shards", "-o", "merged.pf_probe"}).exitCode, 0);
+    EXPECT_EQ(json::parse(run({"info", "--json", "merged.pf_probe"}).out)["range"]["end"], 18);
+    for (const char* wrong : {"4/4", "0/19", "0/0", "1/", "1/2/3"})
+        EXPECT_EQ(run(tiny({"scene.toml", "-o", "a.pf_probe", "--probes", wrong})).exitCode, 2) << wrong;
 }
 
 /// A bake that takes some seconds, stopped by `signal` when its journal holds a probe.

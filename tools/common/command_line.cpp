@@ -6,7 +6,6 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "common/table.hpp"
 #include "common/text.hpp"
 
 namespace pfvox::tools {
@@ -18,79 +17,6 @@ constexpr int kMaxThreads = 1024;
 void print(std::FILE* stream, const std::string& text) {
     std::fwrite(text.data(), 1, text.size(), stream);
 }
-
-/// "  left    right" with the right parts in one column.
-std::string twoColumns(const std::vector<std::pair<std::string, std::string>>& rows) {
-    std::size_t width = 0;
-    for (const auto& row : rows) width = std::max(width, displayWidth(row.first));
-    std::string text;
-    for (const auto& [left, right] : rows) {
-        text += fmt::format("  {}{}  {}\n", left, std::string(width - displayWidth(left), ' '), right);
-    }
-    return text;
-}
-
-/// The help page of one command.
-class HelpFormatter final : public CLI::Formatter {
-  public:
-    explicit HelpFormatter(HelpText text) : text_(std::move(text)) {}
-
-    std::string make_help(const CLI::App* app, std::string, CLI::AppFormatMode) const override {
-        std::string page = text_.summary + "\n\nUsage:\n";
-        for (const std::string& line : text_.usage) page += "  " + line + "\n";
-        page += commands(app) + optionGroups(app) + examples();
-        page += "\nExit codes:\n";
-        std::vector<std::pair<std::string, std::string>> codes;
-        for (const ExitCodeText& entry : exitCodeTexts()) {
-            codes.emplace_back(fmt::format("{:3}", static_cast<int>(entry.code)), std::string(entry.text));
-        }
-        return page + twoColumns(codes);
-    }
-
-  private:
-    static std::string commands(const CLI::App* app) {
-        std::vector<std::pair<std::string, std::string>> rows;
-        for (const CLI::App* command : app->get_subcommands({})) {
-            rows.emplace_back(command->get_name(), command->get_description());
-        }
-        if (rows.empty()) return {};
-        return fmt::format("\nCommands (`{} <command> --help` tells more):\n", app->get_name()) +
-               twoColumns(rows);
-    }
-
-    static std::string optionGroups(const CLI::App* app) {
-        std::string text;
-        std::vector<std::string> groups = app->get_groups();
-        std::ranges::stable_partition(groups,
-                                      [](const std::string& name) { return name != group::kGeneral; });
-        for (const std::string& group : groups) {
-            std::vector<std::pair<std::string, std::string>> rows;
-            for (const CLI::Option* option : app->get_options()) {
-                if (option->get_group() != group || !option->nonpositional()) continue;
-                rows.emplace_back(names(*option), option->get_description());
-            }
-            if (!rows.empty()) text += "\n" + group + ":\n" + twoColumns(rows);
-        }
-        return text;
-    }
-
-    static std::string names(const CLI::Option& option) {
-        std::string text = option.get_snames().empty() ? "    " : "-" + option.get_snames().front();
-        if (!option.get_lnames().empty()) {
-            text += (option.get_snames().empty() ? "--" : ", --") + option.get_lnames().front();
-        }
-        if (!option.get_option_text().empty()) text += " " + option.get_option_text();
-        return text;
-    }
-
-    std::string examples() const {
-        std::vector<std::pair<std::string, std::string>> rows;
-        for (const Example& example : text_.examples) rows.emplace_back(example.command, example.meaning);
-        return rows.empty() ? std::string() : "\nExamples:\n" + twoColumns(rows);
-    }
-
-    HelpText text_;
-};
 
 std::vector<std::string> optionNames(const CLI::App& command) {
     std::vector<std::string> names;
@@ -133,33 +59,16 @@ std::optional<std::string> complaintAboutCommand(const CLI::App& tool,
 
 }  // namespace
 
-std::unique_ptr<CLI::App> makeTool(const std::string& name, const HelpText& text,
-                                   const std::string& version) {
-    auto tool = std::make_unique<CLI::App>(text.summary, name);
-    tool->formatter(std::make_shared<HelpFormatter>(text));
-    tool->set_help_flag("-h,--help", "print this page")->group(group::kGeneral);
-    tool->set_version_flag("--version", version, "print the version and the formats read and written")
-        ->group(group::kGeneral);
-    return tool;
-}
-
-CLI::App& addCommand(CLI::App& tool, const std::string& name, const HelpText& text) {
-    CLI::App& command = *tool.add_subcommand(name, text.summary);
-    command.formatter(std::make_shared<HelpFormatter>(text));
-    command.set_help_flag("-h,--help", "print this page")->group(group::kGeneral);
-    return command;
-}
-
-std::vector<std::string> withDefaultCommand(const CLI::App& tool, const std::string& command, int argc,
-                                            const char* const* argv) {
+std::vector<std::string> withDefaultCommand(const CLI::App& tool, int argc, const char* const* argv) {
     std::vector<std::string> arguments(argv + std::min(argc, 1), argv + argc);
     if (arguments.empty()) return arguments;
     const std::string& first = arguments.front();
     const auto commands = tool.get_subcommands([](const CLI::App*) { return true; });
     const bool isCommand =
         std::ranges::any_of(commands, [&](const CLI::App* app) { return app->get_name() == first; });
-    if (isCommand || first == "--help" || first == "-h" || first == "--version") return arguments;
-    arguments.insert(arguments.begin(), command);
+    const bool isOfTool = first == "--help" || first == "-h" || first == "--version" || first.starts_with("--generate");
+    if (isCommand || isOfTool) return arguments;
+    arguments.insert(arguments.begin(), helpTextOf(tool).defaultCommand);
     return arguments;
 }
 

@@ -5,39 +5,18 @@
 // code 2.
 #pragma once
 
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 #include <functional>
-#include <memory>
 #include <optional>
 #include <string>
 #include <tl/expected.hpp>
 #include <vector>
 
 #include "common/exit_code.hpp"
+#include "common/help_page.hpp"
 #include "common/reporter.hpp"
 #include "pfvox/limits.hpp"
 
 namespace pfvox::tools {
-
-struct Example {
-    std::string command;
-    std::string meaning;
-};
-
-/// What a help page says beside the options.
-struct HelpText {
-    std::string summary;  ///< one sentence
-    std::vector<std::string> usage;
-    std::vector<Example> examples;
-};
-
-/// The tool itself, without options but --help and --version.
-std::unique_ptr<CLI::App> makeTool(const std::string& name, const HelpText& text, const std::string& version);
-
-/// A subcommand of the tool.
-CLI::App& addCommand(CLI::App& tool, const std::string& name, const HelpText& text);
 
 /// A subcommand and what to do when it was chosen. The options that `run` reads live as long as `run` does.
 struct Command {
@@ -53,9 +32,8 @@ inline constexpr const char* kBuild = "In a build";
 inline constexpr const char* kGeneral = "General";
 }  // namespace group
 
-/// Adds `command` in front of arguments that name no subcommand, so that `vox2pf a.vox -o out` works.
-std::vector<std::string> withDefaultCommand(const CLI::App& tool, const std::string& command, int argc,
-                                            const char* const* argv);
+/// Adds the default command in front of arguments that name none, so that `vox2pf a.vox -o out` works.
+std::vector<std::string> withDefaultCommand(const CLI::App& tool, int argc, const char* const* argv);
 
 /// Parses. Returns an exit code when the tool has nothing more to do: help or version printed, or wrong usage
 /// reported.

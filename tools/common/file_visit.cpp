@@ -7,8 +7,11 @@
 
 namespace pfvox::tools {
 
-void addReadOptions(CLI::App& command, ReadOptions& options) {
-    command.add_option("input", options.inputs)->required()->group(group::kInputOutput);
+void addReadOptions(CLI::App& command, ReadOptions& options, const std::string& extension) {
+    command.add_option("input", options.inputs)
+        ->required()
+        ->check(suggestFiles({extension}))
+        ->group(group::kInputOutput);
     addCommonOptions(command, options.common);
 }
 

@@ -18,7 +18,8 @@ struct ReadOptions {
     std::vector<std::string> inputs;
 };
 
-void addReadOptions(CLI::App& command, ReadOptions& options);
+/// `extension` is that of the files which the command reads.
+void addReadOptions(CLI::App& command, ReadOptions& options, const std::string& extension);
 
 /// What happens with one file: returns the code of its failure, or nothing when all is well.
 using FileVisitor =

@@ -58,6 +58,7 @@ class ToolObserver final : public BakeObserver {
 struct Existing {
     bool present = false;
     std::optional<ContentKey> key;
+    ProbeRange range;
     std::optional<fs::file_time_type> time;
     std::optional<io::FileBytes> bytes;  ///< only where they are compared afterwards
 };
@@ -68,17 +69,21 @@ Existing inspect(const BakeOptions& options, const Limits& limits) {
     existing.present = fs::exists(options.output, error);
     if (!existing.present) return existing;
     DiagnosticList ignored;
-    if (const auto reader = ProbeFileReader::open(options.output, limits, ignored)) existing.key = reader->contentKey();
+    if (const auto reader = ProbeFileReader::open(options.output, limits, ignored)) {
+        existing.key = reader->contentKey();
+        existing.range = reader->info().range;
+    }
     if (!options.ifChanged) return existing;
     if (const auto time = fs::last_write_time(options.output, error); !error) existing.time = time;
     if (auto bytes = io::readFile(options.output, limits.maxFileBytes)) existing.bytes = *std::move(bytes);
     return existing;
 }
 
-std::string reasonFor(const BakeOptions& options, const Existing& existing, const ContentKey& wanted) {
+std::string reasonFor(const BakeOptions& options, const Existing& existing, const ContentKey& wanted, const ProbeRange& range) {
     if (!existing.present) return "there was no output";
     if (options.force) return "--force";
     if (!existing.key) return "the existing output is not a complete PF_PROBE file of this version";
+    if (existing.range != range) return "the existing output holds other probes";
     return *existing.key == wanted ? "same scene, settings, program and device as in the last bake"
                                    : "the scene, the settings, the program or the device changed since the last bake";
 }
@@ -174,7 +179,8 @@ class BakeRun {
         PFVOX_TRY(gpu::Device, device, gpu::Device::open({.selector = options_.device, .memoryBytes = options_.deviceMemoryMiB << 20}));
         outcome_.device = device.info().name;
         const Existing existing = inspect(options_, limits_);
-        outcome_.reason = reasonFor(options_, existing, bakeContentKey(scene, *settings, device.info()));
+        outcome_.reason = reasonFor(options_, existing, bakeContentKey(scene, *settings, device.info()),
+                                    settings->range.value_or(ProbeRange{0, static_cast<std::uint32_t>(scene.probes.probeCount())}));
         ToolObserver observer(reporter_, options_.output);
         auto report = bakeProbes(device, scene, *settings, options_.output, observer, diagnostics);
         last_ = observer.last();

@@ -6,6 +6,8 @@
 #include <charconv>
 #include <vector>
 
+#include "probe-bake/commands.hpp"
+
 namespace pfvox::tools {
 
 namespace {
@@ -89,13 +91,14 @@ void addRunOptions(CLI::App& command, BakeOptions& options) {
         ->check(numberFrom(1, 1 << 24))
         ->group(kBaking);
     command.add_flag("--list-devices", options.listDevices, "print the devices and do nothing")->group(kBaking);
-    command.add_option("--probes", options.probes, "bake probes A to B - 1 only: a shard for `probe-bake merge`")
-        ->option_text("A:B")
+    command.add_option("--probes", options.probes, "bake probes A to B - 1 only, or part K of N, from 0: a shard for merge")
+        ->option_text("A:B|K/N")
         ->group(kBaking);
     command.add_flag("--resume", options.resume, "take finished probes of a stopped bake from the journal")
         ->group(kBaking);
     command.add_option("--depfile", options.depfile, "write what the output was made from, for make and ninja")
         ->option_text("FILE")
+        ->check(suggestFiles({".d"}))
         ->group(group::kBuild);
     command.add_flag("--if-changed", options.ifChanged, "keep the time stamp of an output that stays the same (ninja)")
         ->group(group::kBuild);
@@ -112,9 +115,12 @@ void addDeviceOption(CLI::App& command, std::string& device) {
 }
 
 void addBakeOptions(CLI::App& command, BakeOptions& options) {
-    command.add_option("input", options.input)->group(group::kInputOutput);
+    command.add_option("input", options.input)
+        ->check(suggestFiles({".toml", ".pf_vox"}))
+        ->group(group::kInputOutput);
     command.add_option("-o,--output", options.output, "the probe file (.pf_probe); required")
         ->option_text("FILE")
+        ->check(suggestFiles({kPfProbeExtension}))
         ->group(group::kInputOutput);
     command.add_flag("--force", options.force, "bake what is up to date, too")->group(group::kInputOutput);
     command.add_flag("--explain", options.explain, "say why it is baked or not")->group(group::kInputOutput);
@@ -123,7 +129,24 @@ void addBakeOptions(CLI::App& command, BakeOptions& options) {
     addCommonOptions(command, options.common);
 }
 
+namespace {
+
+/// Part K of N; the parts differ by one probe at most.
+tl::expected<ProbeRange, std::string> parseProbePart(const std::string& text, std::uint64_t probeCount) {
+    const auto part = parseCounts(text, '/');
+    if (!part || part->size() != 2 || part->at(0) >= part->at(1))
+        return tl::make_unexpected(fmt::format("--probes {}: not part K of N, K from 0 to N - 1", text));
+    const std::uint64_t parts = part->at(1);
+    if (parts > probeCount)
+        return tl::make_unexpected(fmt::format("--probes {}: {} probes do not make {} parts", text, probeCount, parts));
+    const auto end = [&](std::uint64_t k) { return static_cast<std::uint32_t>(probeCount * k / parts); };
+    return ProbeRange{end(part->at(0)), end(part->at(0) + 1)};
+}
+
+}  // namespace
+
 tl::expected<ProbeRange, std::string> parseProbeRange(const std::string& text, std::uint64_t probeCount) {
+    if (text.find('/') != std::string::npos) return parseProbePart(text, probeCount);
     const auto ends = parseCounts(text, ':');
     if (!ends || ends->size() != 2)
         return tl::make_unexpected(fmt::format("--probes {}: not two numbers with a colon between them", text));

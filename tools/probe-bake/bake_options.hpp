@@ -43,7 +43,7 @@ void addDeviceOption(CLI::App& command, std::string& device);
 /// Settings of a bake over so many probes. On failure: what is wrong with which option.
 tl::expected<BakeSettings, std::string> settingsOf(const BakeOptions& options, std::uint64_t probeCount);
 
-/// "a:b", half open, within [0, probeCount].
+/// "a:b", half open, within [0, probeCount]; or "k/n", part k of n from 0.
 tl::expected<ProbeRange, std::string> parseProbeRange(const std::string& text, std::uint64_t probeCount);
 
 /// "depth,light,irradiance,moments" in texels, 0 = none.

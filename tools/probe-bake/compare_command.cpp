@@ -126,7 +126,11 @@ ExitCode runCompare(const CLI::App& command, const CompareOptions& options) {
 Command makeCompareCommand(CLI::App& tool) {
     auto options = std::make_shared<CompareOptions>();
     CLI::App& command = addCommand(tool, "compare", helpText());
-    command.add_option("input", options->files)->required()->expected(2)->group(group::kInputOutput);
+    command.add_option("input", options->files)
+        ->required()
+        ->expected(2)
+        ->check(suggestFiles({kPfProbeExtension}))
+        ->group(group::kInputOutput);
     command.add_flag("--equal", options->requireEqual, "fail unless the hashes of all probes are equal")
         ->group(group::kInputOutput);
     command.add_option("--min-psnr", options->minPsnr, "fail when the light of a layer is further apart, dB, 0 to 200")

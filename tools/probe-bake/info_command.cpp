@@ -21,7 +21,7 @@ HelpText helpText() {
 Command makeInfoCommand(CLI::App& tool) {
     auto options = std::make_shared<ReadOptions>();
     CLI::App& command = addCommand(tool, "info", helpText());
-    addReadOptions(command, *options);
+    addReadOptions(command, *options, kPfProbeExtension);
 
     auto visit = [options, first = true](const std::filesystem::path& file, const Limits& limits,
                                          Reporter& reporter) mutable -> std::optional<ErrorCode> {

@@ -29,7 +29,11 @@ HelpText helpText() {
                       "probe-bake merge [options] <shard.pf_probe>... -o <file.pf_probe>",
                       "probe-bake verify [options] <scene.toml | file.pf_vox> <file.pf_probe>"},
             .examples = {{"probe-bake scene.toml -o scene.pf_probe", "bake the scene's grid"},
-                         {"probe-bake info hall.pf_probe", "what is in it"}}};
+                         {"probe-bake info hall.pf_probe", "what is in it"}},
+            .defaultCommand = "bake",
+            .details = {"Results go to stdout, messages to stderr. An output appears complete or not at all. A bake that "
+                        "was stopped leaves its finished probes in a journal beside the output; --resume goes on from there.",
+                        "The same scene, settings and device give the same bytes, in one run or in shards that are merged."}};
 }
 
 ExitCode run(int argc, char** argv) {
@@ -40,7 +44,7 @@ ExitCode run(int argc, char** argv) {
     tool->require_subcommand(1);
     const std::array commands{makeBakeCommand(*tool), makeInfoCommand(*tool), makeValidateCommand(*tool), makeCompareCommand(*tool),
                               makeMergeCommand(*tool), makeVerifyCommand(*tool)};
-    if (const auto exitCode = parseCommandLine(*tool, withDefaultCommand(*tool, "bake", argc, argv))) {
+    if (const auto exitCode = parseCommandLine(*tool, withDefaultCommand(*tool, argc, argv))) {
         return *exitCode;
     }
     for (const Command& command : commands) {

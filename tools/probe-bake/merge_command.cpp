@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <pfvox/files.hpp>
 #include <pfvox/probe_file.hpp>
+#include <pfvox/shard_proximity.hpp>
 
 #include "common/file_visit.hpp"
 #include "common/inputs.hpp"
@@ -16,6 +18,7 @@ namespace {
 
 struct MergeOptions : ReadOptions {
     std::string output;
+    std::string scene;
     bool allowPart = false;
 };
 
@@ -23,19 +26,42 @@ HelpText helpText() {
     return {.summary = "Joins the shards of a bake, in any order, to the file that one bake would have written.",
             .usage = {"probe-bake merge [options] <shard.pf_probe | folder | @list | ->... -o <file.pf_probe>"},
             .examples = {{"probe-bake merge a.pf_probe b.pf_probe -o hall.pf_probe", "two shards"},
-                         {"probe-bake merge shards -o hall.pf_probe", "all shards of a folder"}}};
+                         {"probe-bake merge shards -o hall.pf_probe --scene hall.toml", "a folder of them; with the proximity grid"}}};
 }
 
-/// The content key that all shards share; none when they differ.
-ContentKey commonKey(const std::vector<std::filesystem::path>& shards, const Limits& limits) {
+/// The content key that all shards share; none when they differ, or when the result lacks the proximity grid that a bake would
+/// have made: it must not count as up to date.
+ContentKey commonKey(const std::vector<std::filesystem::path>& shards, bool withProximity, const Limits& limits) {
     std::optional<ContentKey> common;
     for (const std::filesystem::path& shard : shards) {
         DiagnosticList ignored;  // the merge reports them
         const auto reader = ProbeFileReader::open(shard, limits, ignored);
-        if (!reader || (common && *common != reader->contentKey())) return {};
+        if (!reader || (!withProximity && reader->info().resolution.depth != 0) || (common && *common != reader->contentKey())) return {};
         common = reader->contentKey();
     }
     return common.value_or(ContentKey{});
+}
+
+/// The proximity grid, which shards cannot have: from the scene they were baked from. None without a scene or depth maps, and
+/// none when probes are missing or doubled, which the merge reports.
+Result<std::optional<ProximityGrid>> proximityFor(const MergeOptions& options,
+                                                  const std::vector<std::filesystem::path>& files, const Limits& limits,
+                                                  DiagnosticList& diagnostics) {
+    if (options.scene.empty()) return std::nullopt;
+    PFVOX_TRY(const LoadedScene, scene, loadScene(options.scene, limits, diagnostics));
+    std::vector<ProbeFileReader> shards;
+    for (const std::filesystem::path& file : files) {
+        DiagnosticList ignored;  // the merge reports them
+        PFVOX_TRY(ProbeFileReader, reader, ProbeFileReader::open(file, limits, ignored));
+        shards.push_back(std::move(reader));
+    }
+    if (!isWholeGrid(shards) || shards.front().info().resolution.depth == 0) return std::nullopt;
+    auto built = proximityOfShards(scene, shards);
+    if (!built) {
+        built.error().file = options.scene;
+        return tl::make_unexpected(std::move(built).error());
+    }
+    return std::move(built->grid);
 }
 
 ExitCode runMerge(const CLI::App& command, const MergeOptions& options) {
@@ -58,8 +84,10 @@ ExitCode runMerge(const CLI::App& command, const MergeOptions& options) {
 
     DiagnosticList diagnostics;
     const WriteGuard guard;
+    const auto proximity = proximityFor(options, shards, *limits, diagnostics);
+    if (!proximity) return stopWith(proximity.error());
     const ProbeMergeSettings settings{
-        .contentKey = commonKey(shards, *limits), .proximity = {}, .allowPart = options.allowPart};
+        .contentKey = commonKey(shards, proximity->has_value(), *limits), .proximity = *proximity, .allowPart = options.allowPart};
     const auto merged = mergeProbeFields(shards, options.output, settings, *limits, diagnostics);
     reporter.diagnostics(options.output, diagnostics.entries());
     if (!merged) return stopWith(merged.error());
@@ -77,10 +105,15 @@ Command makeMergeCommand(CLI::App& tool) {
     command.add_option("-o,--output", options->output, "the joined file; required")
         ->option_text("FILE")
         ->required()
+        ->check(suggestFiles({kPfProbeExtension}))
+        ->group(group::kInputOutput);
+    command.add_option("--scene", options->scene, "what was baked: makes the proximity grid, which shards cannot have")
+        ->option_text("SCENE")
+        ->check(suggestFiles({".toml", ".pf_vox"}))
         ->group(group::kInputOutput);
     command.add_flag("--allow-part", options->allowPart, "the shards need not make up the whole grid")
         ->group(group::kInputOutput);
-    addReadOptions(command, *options);
+    addReadOptions(command, *options, kPfProbeExtension);
     return {.app = &command, .run = [&command, options] { return runMerge(command, *options); }};
 }
 

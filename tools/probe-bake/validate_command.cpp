@@ -22,7 +22,7 @@ HelpText helpText() {
 Command makeValidateCommand(CLI::App& tool) {
     auto options = std::make_shared<ReadOptions>();
     CLI::App& command = addCommand(tool, "validate", helpText());
-    addReadOptions(command, *options);
+    addReadOptions(command, *options, kPfProbeExtension);
 
     const auto run = [&command, options] {
         bool anyFinding = false;

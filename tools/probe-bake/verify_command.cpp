@@ -232,9 +232,14 @@ ExitCode runVerify(const CLI::App& command, const VerifyOptions& options) {
 Command makeVerifyCommand(CLI::App& tool) {
     auto options = std::make_shared<VerifyOptions>();
     CLI::App& command = addCommand(tool, "verify", helpText());
-    command.add_option("input", options->inputs)->required()->expected(2)->group(group::kInputOutput);
+    command.add_option("input", options->inputs)
+        ->required()
+        ->expected(2)
+        ->check(suggestFiles({".toml", ".pf_vox", kPfProbeExtension}))
+        ->group(group::kInputOutput);
     command.add_option("-o,--output", options->output, "folder for the pictures: probes, reference, FLIP and tiers")
         ->option_text("FOLDER")
+        ->check(suggestFiles({}))
         ->group(group::kInputOutput);
     command.add_option("--camera", options->cameras, "a camera of the scene; may be given again (default: all)")
         ->option_text("NAME")

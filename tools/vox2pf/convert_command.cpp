@@ -25,10 +25,16 @@ HelpText helpText() {
 }
 
 void addInputOutputOptions(CLI::App& command, ConvertOptions& options) {
-    command.add_option("input", options.inputs)->required()->group(group::kInputOutput);
+    std::vector<std::string> suffixes{".toml"};
+    for (const SourceFormat& format : sourceFormats()) suffixes.emplace_back(format.extension);
+    command.add_option("input", options.inputs)
+        ->required()
+        ->check(suggestFiles(suffixes))
+        ->group(group::kInputOutput);
     command.add_option("-o,--output", options.output, "file (.pf_vox) for one input, else folder; required")
         ->option_text("PATH")
         ->required()
+        ->check(suggestFiles({kPfVoxExtension}))
         ->group(group::kInputOutput);
     auto* force = command.add_flag("--force", options.force, "convert what is up to date, too")
                       ->group(group::kInputOutput);
@@ -72,6 +78,7 @@ void addConversionOptions(CLI::App& command, ConvertOptions& options) {
         .add_option("--settings", options.settingsFile,
                     "TOML file with [import], [build], [encode], [[override]]")
         ->option_text("FILE")
+        ->check(suggestFiles({".toml"}))
         ->group(group::kConversion);
     command.add_flag_function("--merge", setTrue(patch.merge), "flatten all instances into one model")
         ->group(group::kConversion);
@@ -117,6 +124,7 @@ void addBuildOptions(CLI::App& command, ConvertOptions& options) {
     command
         .add_option("--depfile", options.depfile, "write what each output was made from, for make and ninja")
         ->option_text("FILE")
+        ->check(suggestFiles({".d"}))
         ->group(group::kBuild);
     command
         .add_flag("--if-changed", options.ifChanged,

@@ -71,13 +71,16 @@ Result<std::uint64_t> exportFile(const std::filesystem::path& source, const Targ
 Command makeExportCommand(CLI::App& tool) {
     auto options = std::make_shared<ExportOptions>();
     CLI::App& command = addCommand(tool, "export", helpText());
-    addReadOptions(command, *options);
+    addReadOptions(command, *options, kPfVoxExtension);
     command.add_option("-o,--output", options->output, "the .vox or .vdb file, or a folder for several")
         ->option_text("PATH")
-        ->required();
+        ->required()
+        ->check(suggestFiles({".vox", ".vdb"}))
+        ->group(group::kInputOutput);
     command.add_option("--format", options->format, "vox or vdb; default: as the output is named, in a folder vox")
         ->option_text("NAME")
-        ->check(CLI::IsMember({kVox, kVdb}));
+        ->check(CLI::IsMember({kVox, kVdb}))
+        ->group(group::kInputOutput);
 
     const auto run = [&command, options] {
         const auto target = targetOf(*options);

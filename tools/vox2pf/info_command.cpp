@@ -30,7 +30,7 @@ Result<FileInfo> readInfo(const std::filesystem::path& file, const Limits& limit
 Command makeInfoCommand(CLI::App& tool) {
     auto options = std::make_shared<ReadOptions>();
     CLI::App& command = addCommand(tool, "info", helpText());
-    addReadOptions(command, *options);
+    addReadOptions(command, *options, kPfVoxExtension);
 
     auto visit = [options, first = true](const std::filesystem::path& file, const Limits& limits,
                                          Reporter& reporter) mutable -> std::optional<ErrorCode> {

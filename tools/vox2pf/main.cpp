@@ -35,7 +35,12 @@ HelpText helpText() {
                   "vox2pf export [options] <file.pf_vox>... -o <file.vox | folder>"},
         .examples = {{"vox2pf hall.vox -o hall.pf_vox", "convert one file"},
                      {"vox2pf assets -o build/assets", "convert a folder, keeping its tree"},
-                     {"vox2pf info hall.pf_vox", "what is in it"}}};
+                     {"vox2pf info hall.pf_vox", "what is in it"}},
+        .defaultCommand = "convert",
+        .details = {"Results go to stdout, messages to stderr. An output appears complete or not at all: a failure, "
+                    "Ctrl-C or a termination signal leaves the previous one.",
+                    "What is up to date by its content is left alone; time stamps are never read. The same input "
+                    "gives the same bytes for any number of threads."}};
 }
 
 ExitCode run(int argc, char** argv) {
@@ -45,7 +50,7 @@ ExitCode run(int argc, char** argv) {
     tool->require_subcommand(1);
     const std::array commands{makeConvertCommand(*tool), makeInfoCommand(*tool), makeValidateCommand(*tool),
                               makeExportCommand(*tool)};
-    if (const auto exitCode = parseCommandLine(*tool, withDefaultCommand(*tool, "convert", argc, argv))) {
+    if (const auto exitCode = parseCommandLine(*tool, withDefaultCommand(*tool, argc, argv))) {
         return *exitCode;
     }
     for (const Command& command : commands) {

@@ -25,7 +25,7 @@ HelpText helpText() {
 Command makeValidateCommand(CLI::App& tool) {
     auto options = std::make_shared<ReadOptions>();
     CLI::App& command = addCommand(tool, "validate", helpText());
-    addReadOptions(command, *options);
+    addReadOptions(command, *options, kPfVoxExtension);
 
     const auto run = [&command, options] {
         bool anyFinding = false;

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <vector>
 
+#include "common/help_page.hpp"
+
 namespace pfvox::viewer {
 
 namespace {
@@ -14,17 +16,27 @@ namespace {
 constexpr int kUsageError = 2;
 constexpr std::uint32_t kMaxEdge = 16384;
 
-constexpr const char* kFooter = R"(Examples:
-  pfview hall.pf_vox
-  pfview scene.toml --camera court
-  pfview hall.pf_vox --screenshot hall.png
-  pfview hall.pf_vox --screenshot hall.png --size 640x480 --view normals
-  pfview scene.toml --screenshot court.png --camera court --frames 16
-  pfview scene.toml --screenshot flight.png --camera-path flight.json --frames 120
-  pfview hall.pf_vox --screenshot hall.png --camera 4,3,8,0,1,0,50 --stats-json -
+tools::HelpText helpText() {
+    using tools::ExitCode;
+    return {.summary = "pfview shows a .pf_vox file or a scene of such files, in a window or as a picture.",
+            .usage = {"pfview [options] [file.pf_vox | scene.toml | folder]"},
+            .examples = {{"pfview hall.pf_vox", "a window"},
+                         {"pfview scene.toml --camera court", "at a camera of the scene"},
+                         {"pfview hall.pf_vox --screenshot hall.png", "a picture"},
+                         {"pfview hall.pf_vox --screenshot hall.png --size 640x480 --view normals", "of something else"},
+                         {"pfview scene.toml --screenshot court.png --camera court --frames 16", "with less noise"},
+                         {"pfview scene.toml --screenshot flight.png --camera-path flight.json --frames 120", "a flight"},
+                         {"pfview hall.pf_vox --screenshot hall.png --camera 4,3,8,0,1,0,50 --stats-json -", "with figures"}},
+            .details = {"With --screenshot no window system is needed."},
+            .exitCodes = {ExitCode::Ok, ExitCode::Usage, ExitCode::CannotReadOrWrite, ExitCode::InvalidInput,
+                          ExitCode::Unsupported, ExitCode::Gpu, ExitCode::Internal}};
+}
 
-Exit codes: 0 ok, 2 usage, 3 cannot read or write, 4 invalid input, 5 unsupported feature or version, 6 GPU unavailable or
-lost, 70 internal error)";
+std::vector<std::string> viewNames() {
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < kViewModes; ++i) names.emplace_back(toString(static_cast<ViewMode>(i)));
+    return names;
+}
 
 /// The whole text as numbers between separators; nothing if any part is not a finite number.
 std::optional<std::vector<double>> numbersIn(const std::string& text, char separator) {
@@ -77,13 +89,14 @@ struct RawOptions {
 };
 
 void declare(CLI::App& app, Options& options, RawOptions& raw) {
-    app.set_version_flag("--version", fmt::format("pfview {}\nreads PF_VOX 1.x", PFVOX_VERSION));
-    app.add_option("file", options.file, "The .pf_vox file, scene (.toml) or folder to look at")->type_name("FILE");
-    app.footer(kFooter);
+    app.add_option("file", options.file, "The .pf_vox file, scene (.toml) or folder to look at")
+        ->type_name("FILE")
+        ->check(tools::suggestFiles({".pf_vox", ".toml"}));
 
     CLI::Option_group* const picture = app.add_option_group("Picture");
     picture->add_option("--screenshot", options.screenshot, "Write a PNG and exit instead of opening a window; needs no window system")
-        ->type_name("PNG");
+        ->type_name("PNG")
+        ->check(tools::suggestFiles({".png"}));
     picture->add_option("--size", raw.size, "Pixels; default 1280x720, of a window what it was last")->type_name("WxH");
     picture
         ->add_option(
@@ -92,7 +105,8 @@ void declare(CLI::App& app, Options& options, RawOptions& raw) {
             "first camera, else frames everything")
         ->type_name("CAMERA");
     picture->add_option("--view", raw.view, "final, albedo, normals, material, depth, steps or lod; default final")
-        ->type_name("MODE");
+        ->type_name("MODE")
+        ->check(tools::suggestWords(viewNames()));
     picture
         ->add_option("--samples", options.picture.samplesPerPixel,
                      "Camera rays for each pixel, 1 to 256; default 4")
@@ -108,7 +122,8 @@ void declare(CLI::App& app, Options& options, RawOptions& raw) {
     picture
         ->add_option("--camera-path", options.cameraPath,
                      "Fly through the cameras of a JSON file; writes PNG-0001.png and so on")
-        ->type_name("JSON");
+        ->type_name("JSON")
+        ->check(tools::suggestFiles({".json"}));
     picture
         ->add_option("--lod-pixels", options.picture.lodPixels,
                      "Levels of detail narrower than this stand for what is in them; 0 to 64, 0 = none, default 1")
@@ -126,7 +141,8 @@ void declare(CLI::App& app, Options& options, RawOptions& raw) {
 
     CLI::Option_group* const output = app.add_option_group("Output");
     output->add_option("--stats-json", options.statisticsFile, "Write statistics as JSON; - is stdout")
-        ->type_name("FILE");
+        ->type_name("FILE")
+        ->check(tools::suggestFiles({".json"}));
     output->add_flag("-q,--quiet", options.quiet, "No messages but errors");
 }
 
@@ -156,7 +172,8 @@ void understand(const RawOptions& raw, Options& options) {
 }  // namespace
 
 std::variant<Options, EarlyExit> parseOptions(int argc, const char* const* argv) {
-    CLI::App app("Shows a .pf_vox file or a scene of such files.", "pfview");
+    const auto tool = tools::makeTool("pfview", helpText(), fmt::format("pfview {}\nreads PF_VOX 1.x", PFVOX_VERSION));
+    CLI::App& app = *tool;
     Options options;
     RawOptions raw;
     try {

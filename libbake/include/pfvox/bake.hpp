@@ -26,12 +26,12 @@ enum class LightSampling : std::uint8_t {
     Emitters,    ///< emissive voxels by next-event estimation only
     Directions,  ///< emissive voxels only where a path runs into them
 };
-
+/// How a bake is done.
 struct BakeSettings {
-    ProbeResolution resolution = resolutionOf(ProbeProfile::Default);
-    std::uint64_t seed = 0;
-    std::uint32_t minSamples = 32;    ///< paths a texel; a multiple of 16
-    std::uint32_t maxSamples = 4096;  ///< a multiple of 16, >= minSamples
+    ProbeResolution resolution = resolutionOf(ProbeProfile::Default);  ///< edges of the maps
+    std::uint64_t seed = 0;                                            ///< of the random numbers
+    std::uint32_t minSamples = 32;                                     ///< paths a texel; a multiple of 16
+    std::uint32_t maxSamples = 4096;                                   ///< a multiple of 16, >= minSamples
     /// A tile of 8 x 8 texels stops when the standard error of its mean is under noiseTarget x max(mean,
     /// noiseFloor); 0 = every texel gets minSamples.
     float noiseTarget = 0.02f;
@@ -41,7 +41,7 @@ struct BakeSettings {
     std::optional<std::uint32_t> maxBounces;
     /// The probes to bake; the file is then a shard. Nothing = all.
     std::optional<ProbeRange> range;
-    LightSampling sampling = LightSampling::Combined;
+    LightSampling sampling = LightSampling::Combined;  ///< how paths find light
     bool stratified = true;  ///< Sobol points for the first two vertices; false, for tests: hashes for all
     bool relocate = true;   ///< move probes out of solids; false: those that touch one are inactive
     bool filter = true;     ///< take noise out of the light maps (docs/baking.md); false: each texel has its own paths only
@@ -55,16 +55,16 @@ struct BakeSettings {
 
 /// Where a bake stands.
 struct BakeProgress {
-    std::uint64_t probes = 0;         ///< to be baked in all
-    std::uint64_t probesDone = 0;     ///< those that the journal had counted
-    std::uint64_t probesReused = 0;   ///< of these, taken from the journal
-    std::uint64_t rays = 0;           ///< cast so far
-    double elapsedSeconds = 0.0;      ///< since the bake began
-    double gpuMs = 0.0;               ///< device time so far
+    std::uint64_t probes = 0;        ///< to be baked in all
+    std::uint64_t probesDone = 0;    ///< those that the journal had counted
+    std::uint64_t probesReused = 0;  ///< of these, taken from the journal
+    std::uint64_t rays = 0;          ///< cast so far
+    double elapsedSeconds = 0.0;     ///< since the bake began
+    double gpuMs = 0.0;              ///< device time so far
     /// From the time of the probes baked so far; nothing before the first.
     std::optional<double> secondsLeft;
 };
-
+/// What a bake tells while it runs, and how it is stopped. Called from the thread that bakes.
 class BakeObserver {
   public:
     BakeObserver() = default;
@@ -81,31 +81,31 @@ class BakeObserver {
 
 /// Rays and device time of one pass.
 struct BakePass {
-    std::uint64_t rays = 0;
-    double gpuMs = 0.0;
+    std::uint64_t rays = 0;  ///< cast by the pass
+    double gpuMs = 0.0;      ///< time of the pass on the device
 };
-
+/// What a bake did and what came of it.
 struct BakeReport {
     bool upToDate = false;  ///< the output had this content already: nothing was done, the rest is empty
     BakePass geometry;      ///< what the probes see
     BakePass light;         ///< paths, shadow rays counted
     double smallLayersMs = 0.0;  ///< CPU: irradiance, moments, min maps, summed over threads
-    double proximityMs = 0.0;
+    double proximityMs = 0.0;  ///< CPU, wall clock: the proximity grid
     double writeMs = 0.0;  ///< compression and journal, summed over threads; then copying into the file
     double totalMs = 0.0;  ///< wall clock
-    std::uint64_t probes = 0;
+    std::uint64_t probes = 0;  ///< in the range of this bake
     std::uint64_t reused = 0;  ///< taken from the journal
     std::uint64_t active = 0;  ///< relocated ones included
-    std::uint64_t relocated = 0;
-    std::uint64_t inactive = 0;
-    std::uint64_t emitterFaces = 0;
+    std::uint64_t relocated = 0;  ///< moved out of solids
+    std::uint64_t inactive = 0;  ///< without a free place
+    std::uint64_t emitterFaces = 0;  ///< exposed faces of emissive voxels
     std::uint64_t cappedRays = 0;  ///< given up by the traversal; 0 in valid data
     double meanError = 0.0;        ///< relative standard error of I, mean over active probes
-    double maxError = 0.0;
+    double maxError = 0.0;  ///< the largest of an active probe
     double cappedTileShare = 0.0;  ///< tiles that stopped at maxSamples; mean over active probes
     double meanSamples = 0.0;      ///< paths a texel that sees a surface, of probes baked in this run
     ProximityReport proximity;     ///< uncoveredCells among it
-    std::uint64_t fileBytes = 0;
+    std::uint64_t fileBytes = 0;  ///< of the output
 };
 
 /// Of everything in a scene that decides the light: models, transforms, materials, sun and sky. Cameras, names
@@ -113,7 +113,7 @@ struct BakeReport {
 ContentKey sceneContentHash(const LoadedScene& scene);
 
 /// What a bake of this scene with these settings on this device puts into the header of its file: with an equal
-/// key and an output that holds it there is nothing to do.
+/// key and an output that holds it and the same probes there is nothing to do. Shards have the key of the whole.
 ContentKey bakeContentKey(const LoadedScene& scene, const BakeSettings& settings,
                           const gpu::DeviceInfo& device);
 

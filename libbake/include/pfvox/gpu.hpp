@@ -35,28 +35,28 @@ struct ProgramState;
 
 struct NativeDevice;
 struct NativeQueueFamily;
-
+/// What kind of device it is.
 enum class DeviceKind : std::uint8_t { Discrete, Integrated, Virtual, Other, Software };
 
 /// The spelling used in reports: "discrete", "integrated", ...
 const char* toString(DeviceKind kind);
-
+/// A Vulkan device, whether we can use it or not.
 struct DeviceInfo {
     std::uint32_t index = 0;  ///< position in listDevices(); selects the device
-    std::string name;
-    DeviceKind kind = DeviceKind::Other;
+    std::string name;  ///< as its driver gives it
+    DeviceKind kind = DeviceKind::Other;  ///< discrete, integrated, software
     std::string driver;  ///< driver name and version, as the driver spells them
-    std::uint32_t apiVersionMajor = 0;
-    std::uint32_t apiVersionMinor = 0;
+    std::uint32_t apiVersionMajor = 0;       ///< of the device, not of the loader
+    std::uint32_t apiVersionMinor = 0;       ///< of the device, not of the loader
     std::uint64_t localMemoryBytes = 0;  ///< largest device-local heap, or DeviceOptions::memoryBytes if that is less
     std::string missing;                 ///< what pfvox needs and the device lacks; empty = usable
-    bool usable() const { return missing.empty(); }
+    bool usable() const { return missing.empty(); }  ///< whether it has all that is needed
 };
 
 /// Every Vulkan device of the machine, usable or not. Errors: GpuUnavailable when there is no Vulkan loader
 /// or driver.
 Result<std::vector<DeviceInfo>> listDevices();
-
+/// How a device is chosen and opened.
 struct DeviceOptions {
     /// Empty: the first usable device, real ones before software. A number: the index in listDevices(). Else:
     /// a part of the name, whatever its case.
@@ -67,7 +67,7 @@ struct DeviceOptions {
     bool validation = false;
     /// Further extensions for whoever shares the device (pfvox/gpu_native.hpp). A device without them is not usable.
     std::vector<std::string> instanceExtensions = {};
-    std::vector<std::string> deviceExtensions = {};
+    std::vector<std::string> deviceExtensions = {};  ///< further ones, by name
     /// When set, the queue draws as well as computes and is one for which this is true.
     std::function<bool(const NativeQueueFamily&)> queueFits = {};
 };
@@ -79,13 +79,13 @@ class Buffer {
     Buffer& operator=(Buffer&&) noexcept;
     ~Buffer();
 
-    std::uint64_t sizeBytes() const;
+    std::uint64_t sizeBytes() const;  ///< as it was made
     /// What shaders see, low word first. A multiple of 256.
     std::uint64_t address() const;
     glm::uvec2 addressWords(std::uint64_t offsetBytes = 0) const {
         const std::uint64_t a = address() + offsetBytes;
         return {static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(a >> 32)};
-    }
+    }  ///< low and high half of the address of a byte
 
   private:
     friend class Device;
@@ -109,12 +109,12 @@ class Program {
 
 /// One launch of a program. `pushConstants` has the size that the program was made with.
 struct Dispatch {
-    const Program* program = nullptr;
-    std::span<const std::byte> pushConstants;
-    glm::uvec3 groups{1};
+    const Program* program = nullptr;          ///< what runs; must outlive the dispatch
+    std::span<const std::byte> pushConstants;  ///< as many bytes as the program declares
+    glm::uvec3 groups{1};                      ///< work groups along x, y, z
     /// When set, the device reads the workgroups from there at launch: three words at `groupsAtBytes`, a multiple of 4.
     const Buffer* groupsFrom = nullptr;
-    std::uint64_t groupsAtBytes = 0;
+    std::uint64_t groupsAtBytes = 0;  ///< where in that buffer, a multiple of 4
 };
 
 /// The bytes of a push constant block.
@@ -122,10 +122,10 @@ template <class T>
 std::span<const std::byte> bytesOf(const T& block) {
     return std::as_bytes(std::span(&block, 1));
 }
-
+/// Memory of the device that this process has taken through it.
 struct MemoryUse {
     std::uint64_t currentBytes = 0;  ///< buffers and staging that exist now
-    std::uint64_t peakBytes = 0;
+    std::uint64_t peakBytes = 0;     ///< the most at one time
 };
 
 /// One opened GPU (or llvmpipe, which computes the same on the CPU).
@@ -138,8 +138,8 @@ class Device {
     Device& operator=(Device&&) noexcept;
     ~Device();
 
-    const DeviceInfo& info() const;
-    MemoryUse memory() const;
+    const DeviceInfo& info() const;  ///< what was opened
+    MemoryUse memory() const;        ///< buffers of this device, now and at most
     /// The largest buffer that createBuffer can make.
     std::uint64_t maxBufferBytes() const;
 

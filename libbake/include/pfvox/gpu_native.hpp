@@ -18,20 +18,20 @@ namespace pfvox::gpu {
 
 /// A queue family, before a device is opened (DeviceOptions::queueFits).
 struct NativeQueueFamily {
-    VkInstance_T* instance = nullptr;
-    VkPhysicalDevice_T* physicalDevice = nullptr;
-    std::uint32_t index = 0;
+    VkInstance_T* instance = nullptr;              ///< the one that was asked for
+    VkPhysicalDevice_T* physicalDevice = nullptr;  ///< the one that was chosen
+    std::uint32_t index = 0;                       ///< of the queue family
 };
 
 /// They live as long as the Device and are not to be destroyed.
 struct NativeDevice {
-    VkInstance_T* instance = nullptr;
-    VkPhysicalDevice_T* physicalDevice = nullptr;
-    VkDevice_T* device = nullptr;
-    VkQueue_T* queue = nullptr;  ///< the one that run() uses
-    std::uint32_t queueFamily = 0;
+    VkInstance_T* instance = nullptr;              ///< owned by the Device
+    VkPhysicalDevice_T* physicalDevice = nullptr;  ///< owned by the Device
+    VkDevice_T* device = nullptr;                  ///< owned by the Device
+    VkQueue_T* queue = nullptr;                    ///< the one that run() uses
+    std::uint32_t queueFamily = 0;                 ///< of the queue that computes
 };
-NativeDevice nativeOf(const Device& device);
+NativeDevice nativeOf(const Device& device);  ///< valid as long as the device
 
 /// A buffer that may be copied from and to.
 VkBuffer_T* nativeOf(const Buffer& buffer);

@@ -12,19 +12,19 @@
 #include <vector>
 
 namespace pfvox::gpu {
-
+/// What of a probe file goes to the device.
 struct GpuProbeSettings {
     float voxelMetres = 0.1f;      ///< edge of a voxel of the scene: what offsets are measured in
     float thicknessMetres = 0.0f;  ///< of surfaces, for light-field tracing; 0 = one voxel
     bool compactOnly = false;      ///< leave depth and light maps out: for pictures of the compact layers alone
 };
-
+/// What the probes take there.
 struct GpuProbeStatistics {
-    std::uint32_t probes = 0;
-    std::uint32_t active = 0;
-    std::uint64_t mapBytes = 0;
-    std::uint64_t tableBytes = 0;  ///< entries and proximity grid
-    std::uint64_t totalBytes() const { return mapBytes + tableBytes; }
+    std::uint32_t probes = 0;                                           ///< in the file
+    std::uint32_t active = 0;                                           ///< of them, with maps
+    std::uint64_t mapBytes = 0;                                         ///< of maps
+    std::uint64_t tableBytes = 0;                                       ///< entries and proximity grid
+    std::uint64_t totalBytes() const { return mapBytes + tableBytes; }  ///< all together
 };
 
 /// Immutable once made. Keeps its device alive; does not keep the reader.
@@ -39,7 +39,7 @@ class GpuProbes {
 
     /// Device address of the shared::ProbeFieldRecord.
     glm::uvec2 address() const { return table_.addressWords(); }
-    const GpuProbeStatistics& statistics() const { return statistics_; }
+    const GpuProbeStatistics& statistics() const { return statistics_; }  ///< fixed after load()
 
   private:
     GpuProbes(Buffer table, std::vector<Buffer> blocks) : table_(std::move(table)), blocks_(std::move(blocks)) {}

@@ -18,8 +18,8 @@ namespace pfvox::gpu {
 
 /// One asset and where it stands. All its visible instances take part.
 struct ScenePart {
-    const OctreeAsset* asset = nullptr;
-    Affine worldFromAsset = identityAffine();
+    const OctreeAsset* asset = nullptr;        ///< must outlive the build
+    Affine worldFromAsset = identityAffine();  ///< to world space, metres
 };
 
 /// The visible models of a scene file, as Scene::build takes them. They point into `scene`.
@@ -27,28 +27,28 @@ std::vector<ScenePart> partsOf(const LoadedScene& scene);
 
 /// A box in the world, in metres. Empty when min > max.
 struct WorldBox {
-    glm::dvec3 min{std::numeric_limits<double>::infinity()};
-    glm::dvec3 max{-std::numeric_limits<double>::infinity()};
-    bool empty() const { return min.x > max.x || min.y > max.y || min.z > max.z; }
+    glm::dvec3 min{std::numeric_limits<double>::infinity()};                        ///< metres
+    glm::dvec3 max{-std::numeric_limits<double>::infinity()};                       ///< metres
+    bool empty() const { return min.x > max.x || min.y > max.y || min.z > max.z; }  ///< nothing included
 };
 
 /// What the scene consists of and where its bytes are.
 struct SceneStatistics {
-    std::uint32_t models = 0;     ///< that a visible instance uses
-    std::uint32_t instances = 0;  ///< visible
-    std::uint32_t regions = 0;
-    std::uint32_t materials = 0;
-    std::uint32_t bvhNodes = 0;
-    std::uint64_t voxels = 0;     ///< of the models, each counted once
-    std::uint64_t nodeBytes = 0;     ///< wide nodes
-    std::uint64_t lodBytes = 0;      ///< levels of detail
-    std::uint64_t valueBytes = 0;    ///< materials of single voxels
-    std::uint64_t paletteBytes = 0;  ///< regions' palettes
+    std::uint32_t models = 0;         ///< that a visible instance uses
+    std::uint32_t instances = 0;      ///< visible
+    std::uint32_t regions = 0;        ///< of all models, each once
+    std::uint32_t materials = 0;      ///< of all assets
+    std::uint32_t bvhNodes = 0;       ///< of the BVH over regions
+    std::uint64_t voxels = 0;         ///< of the models, each counted once
+    std::uint64_t nodeBytes = 0;      ///< wide nodes
+    std::uint64_t lodBytes = 0;       ///< levels of detail
+    std::uint64_t valueBytes = 0;     ///< materials of single voxels
+    std::uint64_t paletteBytes = 0;   ///< regions' palettes
     std::uint64_t instanceBytes = 0;  ///< instances, models, materials, BVH
     double buildMs = 0.0;             ///< CPU time of layout, BVH and upload
     std::uint64_t totalBytes() const {
         return nodeBytes + lodBytes + valueBytes + paletteBytes + instanceBytes;
-    }
+    }  ///< on the device
 };
 
 /// Immutable once built. Keeps its device alive; does not keep the assets.
@@ -62,8 +62,8 @@ class Scene {
 
     /// Device address of the shared::SceneHeader.
     glm::uvec2 address() const { return table_.addressWords(); }
-    const WorldBox& bounds() const { return bounds_; }
-    const SceneStatistics& statistics() const { return statistics_; }
+    const WorldBox& bounds() const { return bounds_; }                 ///< world space, metres
+    const SceneStatistics& statistics() const { return statistics_; }  ///< fixed after build()
 
   private:
     Scene(Buffer table, std::vector<Buffer> blocks) : table_(std::move(table)), blocks_(std::move(blocks)) {}

@@ -14,14 +14,14 @@ namespace pfvox::gpu {
 /// Any non-zero direction; distances count in its lengths.
 struct GpuRay {
     glm::vec3 origin{0.0f};  ///< metres
-    glm::vec3 direction{0.0f, 0.0f, -1.0f};
-    float tMax = std::numeric_limits<float>::max();
+    glm::vec3 direction{0.0f, 0.0f, -1.0f};  ///< any length but 0
+    float tMax = std::numeric_limits<float>::max();  ///< in lengths of the direction
     float cone = 0.0f;  ///< width in parts of the distance: finer levels of detail are not told apart
 };
-
+/// The first surface on a ray.
 struct GpuHit {
-    bool hit = false;
-    float t = 0.0f;  ///< in lengths of the direction
+    bool hit = false;  ///< false: the rest means nothing
+    float t = 0.0f;    ///< in lengths of the direction
     std::uint32_t instance =
         0;                   ///< in the order of the scene's parts and their instances, hidden ones counted
     glm::ivec3 voxel{0};     ///< in the model
@@ -33,17 +33,17 @@ struct GpuHit {
     std::uint32_t lodColor = 0;  ///< of a level of detail: R, G, B (sRGB), coverage, R in the low byte; else 0
     std::int32_t cellLog2 = 0;   ///< edge of the cell that was hit = 2^cellLog2 voxels
 };
-
+/// What is asked of a ray.
 enum class RayMode : std::uint8_t {
     ClosestHit,
     AnyHit,  ///< only `hit`, `steps` and `capped` are set
 };
-
+/// What cast() gives.
 struct RayBatch {
     std::vector<GpuHit> hits;  ///< hits[i] belongs to rays[i]
     double gpuMs = 0.0;  ///< of the launch, transfers not counted; 0 where the device has no time stamps
 };
-
+/// Casts rays against a scene: for tests and measurements. Not thread-safe.
 class RayQuery {
   public:
     /// Errors: those of Device::createProgram.

@@ -15,75 +15,82 @@
 
 namespace pfvox {
 
+/// How pictures are taken and compared.
 struct VerifySettings {
-    std::uint32_t width = 320;
-    std::uint32_t height = 180;
+    std::uint32_t width = 320;          ///< pixels
+    std::uint32_t height = 180;         ///< pixels
     std::uint32_t samples = 1024;       ///< paths a pixel of the reference
     std::uint32_t maxBounces = 128;     ///< as the field was baked
 };
 
 /// Sums of I over the samples of even and of odd number; w: how many. Rows from the top.
 struct ReferencePicture {
-    std::uint32_t width = 0;
-    std::uint32_t height = 0;
-    std::vector<glm::vec4> even;
-    std::vector<glm::vec4> odd;
-    double gpuMs = 0.0;
+    std::uint32_t width = 0;      ///< pixels
+    std::uint32_t height = 0;     ///< pixels
+    std::vector<glm::vec4> even;  ///< a sum a pixel
+    std::vector<glm::vec4> odd;   ///< a sum a pixel
+    double gpuMs = 0.0;           ///< of the device
 };
 
+/// One pixel, twice.
 struct VerifiedPixel {
-    glm::vec3 lookup{0.0f};
-    glm::vec3 reference{0.0f};
+    glm::vec3 lookup{0.0f};  ///< I out of the probes
+    glm::vec3 reference{0.0f};  ///< I by path tracing
     glm::vec3 noise{0.0f};  ///< half the difference of two halves of the reference's samples
-    gpu::ProbeTier tier = gpu::ProbeTier::None;
-    MaterialType material = MaterialType::Diffuse;
+    gpu::ProbeTier tier = gpu::ProbeTier::None;  ///< which lookup gave the value
+    MaterialType material = MaterialType::Diffuse;  ///< of the surface
     bool surface = false;   ///< else the camera sees nothing here, and the rest is empty
 };
 
+/// What one camera sees.
 struct VerifiedPicture {
-    std::uint32_t width = 0;
-    std::uint32_t height = 0;
+    std::uint32_t width = 0;            ///< pixels
+    std::uint32_t height = 0;           ///< pixels
     std::vector<VerifiedPixel> pixels;  ///< rows from the top
-    double gpuMs = 0.0;
+    double gpuMs = 0.0;                 ///< of both pictures
 };
 
 /// Some of the pixels of a picture. Shares are of the mean of their reference, all channels.
 struct VerifyPart {
-    std::uint64_t pixels = 0;
-    double meanReference = 0.0;
-    double rmse = 0.0;
-    double relativeRmse = 0.0;
+    std::uint64_t pixels = 0;      ///< that it is about
+    double meanReference = 0.0;    ///< of all channels
+    double rmse = 0.0;             ///< of I, all channels
+    double relativeRmse = 0.0;     ///< over the mean of the reference
     double relativeNoise = 0.0;  ///< of the reference, from its halves
     double relativeError = 0.0;  ///< of the probes alone: sqrt(RMSE^2 - noise^2), 0 where that is negative
     double relativeBias = 0.0;   ///< mean of lookup - reference: brighter or darker as a whole
 };
 
+/// Of MaterialType.
 inline constexpr std::size_t kMaterialTypeCount = 7;
 
+/// How far the probes are from the reference, over the pixels with surface.
 struct VerifyScore {
-    std::uint64_t surfacePixels = 0;
+    std::uint64_t surfacePixels = 0;  ///< pixels that the rest is about
     std::uint64_t withoutValue = 0;  ///< of these: no tier, or not finite
-    std::array<double, gpu::kProbeTierCount> tierShares{};
-    VerifyPart all;
-    std::array<VerifyPart, gpu::kProbeTierCount> byTier;
+    std::array<double, gpu::kProbeTierCount> tierShares{};  ///< of surface pixels, by tier
+    VerifyPart all;                                         ///< every pixel with surface
+    std::array<VerifyPart, gpu::kProbeTierCount> byTier;    ///< those of one tier
     std::array<VerifyPart, kMaterialTypeCount> byMaterial;  ///< of the surface that is seen
     double exposure = 1.0;           ///< for PSNR and FLIP: 0.5 / mean
     double psnrDecibel = 0.0;        ///< of exposed values clamped to [0, 1]; 999 when they are equal
     double meanFlip = 0.0;           ///< over pixels with surface
     double noiseFlip = 0.0;          ///< what the noise of the reference alone makes of it
     std::vector<float> flip;         ///< of all pixels
-    std::uint64_t tierPixels(gpu::ProbeTier tier) const;
+    std::uint64_t tierPixels(gpu::ProbeTier tier) const;  ///< pixels whose value came from this tier
+    /// Those of tier Texels.
     const VerifyPart& texels() const { return byTier[static_cast<std::size_t>(gpu::ProbeTier::Texels)]; }
 };
 
 /// What is looked at; all of it outlives the call.
 struct VerifyInput {
-    const LoadedScene& loaded;  ///< sun and sky
-    const gpu::Scene& scene;
-    const gpu::GpuProbes& probes;
-    const Camera& camera;
+    const LoadedScene& loaded;     ///< sun and sky
+    const gpu::Scene& scene;       ///< what is seen
+    const gpu::GpuProbes& probes;  ///< baked from it
+    const Camera& camera;          ///< from where
 };
 
+/// Renders pictures both ways and compares them. Not thread-safe.
 class ProbeVerifier {
   public:
     /// Errors: those of Device::createProgram.
@@ -105,6 +112,7 @@ class ProbeVerifier {
     gpu::Program program_;
 };
 
+/// Over the pixels with surface; all zero without any.
 VerifyScore scoreOf(const VerifiedPicture& picture);
 
 }  // namespace pfvox

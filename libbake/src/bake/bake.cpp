@@ -76,12 +76,12 @@ class Baker {
   private:
     // --- Before ---
 
-    static bool holds(const std::filesystem::path& output, const ContentKey& key) {
+    bool holds(const std::filesystem::path& output, const ContentKey& key) const {
         std::error_code ignored;
         if (!std::filesystem::exists(output, ignored)) return false;
         DiagnosticList unused;
         const auto reader = ProbeFileReader::open(output, Limits{}, unused);
-        return reader && reader->contentKey() == key;
+        return reader && reader->contentKey() == key && reader->info().range == info_.range;
     }
 
     bool hasGlass() const {

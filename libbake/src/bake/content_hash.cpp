@@ -94,7 +94,7 @@ ContentKey sceneContentHash(const LoadedScene& scene) {
 ContentKey bakeContentKey(const LoadedScene& scene, const BakeSettings& settings, const gpu::DeviceInfo& device) {
     const ProbeFieldInfo info = bake::fieldInfo(scene, settings, device);
     Hasher hasher;
-    hasher.add(bake::fieldHash(info, settings)).add(info.range.first).add(info.range.end);
+    hasher.add(bake::fieldHash(info, settings));
     hasher.add(scene.scene.probes.proximityCells).add(std::uint8_t{settings.proximity}).add(std::string_view(settings.toolName));
     return hasher.key();
 }

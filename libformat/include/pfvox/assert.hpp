@@ -3,12 +3,12 @@
 #pragma once
 
 namespace pfvox::detail {
-[[noreturn]] void assertionFailed(const char* condition, const char* file, int line);
+[[noreturn]] void assertionFailed(const char* condition, const char* file, int line);  ///< For PFVOX_ASSERT.
 }
 
 #ifdef PFVOX_ENABLE_ASSERTIONS
 #define PFVOX_ASSERT(condition) \
     ((condition) ? static_cast<void>(0) : ::pfvox::detail::assertionFailed(#condition, __FILE__, __LINE__))
 #else
-#define PFVOX_ASSERT(condition) static_cast<void>(0)
+#define PFVOX_ASSERT(condition) static_cast<void>(0)  ///< or ends the program and says where
 #endif

@@ -11,7 +11,7 @@
 #include <vector>
 
 namespace pfvox {
-
+/// How light leaves a surface.
 enum class MaterialType : std::uint8_t {
     Diffuse = 0,
     Metal = 1,
@@ -30,20 +30,20 @@ const char* toString(MaterialType type);
 /// quantised() gives what a round trip through a file gives.
 struct Material {
     glm::u8vec4 baseColor{255, 255, 255, 255};  ///< sRGB encoded; alpha is linear, 255 in nearly all sources
-    MaterialType type = MaterialType::Diffuse;
-    float metalness = 0.0f;          ///< [0, 1]
-    float roughness = 1.0f;          ///< [0, 1]
-    float specular = 0.5f;           ///< [0, 1]
-    float indexOfRefraction = 1.5f;  ///< >= 1
-    float emissionStrength = 0.0f;   ///< radiance = linear base colour x strength
-    float transparency = 0.0f;       ///< [0, 1]
-    float density = 0.0f;            ///< of media, per voxel edge
-    float phase = 0.0f;              ///< Henyey-Greenstein g of media, [-1, 1]
-    std::string name = {};
+    MaterialType type = MaterialType::Diffuse;  ///< how light leaves it
+    float metalness = 0.0f;                     ///< [0, 1]
+    float roughness = 1.0f;                     ///< [0, 1]
+    float specular = 0.5f;                      ///< [0, 1]
+    float indexOfRefraction = 1.5f;             ///< >= 1
+    float emissionStrength = 0.0f;              ///< radiance = linear base colour x strength
+    float transparency = 0.0f;                  ///< [0, 1]
+    float density = 0.0f;                       ///< of media, per voxel edge
+    float phase = 0.0f;                         ///< Henyey-Greenstein g of media, [-1, 1]
+    std::string name = {};                      ///< of the source, if it has names
 
     bool operator==(const Material&) const = default;
 };
-
+/// Rounded to what a PF_VOX file can hold.
 Material quantised(const Material& material);
 
 /// Whether nothing can be seen through a voxel of this material: neither glass nor media, no transparency, full
@@ -54,23 +54,23 @@ bool isOpaque(const Material& material);
 struct Instance {
     std::uint32_t model = 0;                   ///< index into the asset's models
     Affine worldFromModel = identityAffine();  ///< voxel units of the model to metres
-    std::string name = {};
-    std::int32_t layer = -1;  ///< index into the asset's layers, -1 = none
-    bool hidden = false;
+    std::string name = {};                     ///< of the source; need not be unique
+    std::int32_t layer = -1;                   ///< index into the asset's layers, -1 = none
+    bool hidden = false;                       ///< it or its layer is hidden
 };
-
+/// A layer of the source.
 struct Layer {
-    std::string name = {};
-    bool hidden = false;
+    std::string name = {};  ///< of the source
+    bool hidden = false;    ///< with all of its instances
     bool operator==(const Layer&) const = default;
 };
 
 /// A camera that the source file stored, in metres and degrees.
 struct Camera {
-    std::string name = {};
-    glm::dvec3 position{0.0};
-    glm::dvec3 target{0.0, 0.0, -1.0};
-    double fovYDegrees = 45.0;
+    std::string name = {};              ///< unique within a scene
+    glm::dvec3 position{0.0};           ///< metres
+    glm::dvec3 target{0.0, 0.0, -1.0};  ///< metres; not the position
+    double fovYDegrees = 45.0;          ///< 1 to 170
     bool operator==(const Camera&) const = default;
 };
 
@@ -83,12 +83,12 @@ struct SourceInfo {
 
 /// Everything but the voxels.
 struct AssetInfo {
-    std::vector<Material> materials;
-    std::vector<Instance> instances;
-    std::vector<Layer> layers;
-    std::vector<Camera> cameras;
-    SourceInfo source;
-    bool hollowed = false;  ///< hidden voxels took another material (pfvox/hollow.hpp)
+    std::vector<Material> materials;  ///< what voxels refer to by index
+    std::vector<Instance> instances;  ///< models in their places
+    std::vector<Layer> layers;        ///< what instances refer to by index
+    std::vector<Camera> cameras;      ///< of the source
+    SourceInfo source;                ///< where it came from
+    bool hollowed = false;            ///< hidden voxels took another material (pfvox/hollow.hpp)
 };
 
 /// Whether the instance is hidden itself or lies on a hidden layer.

@@ -9,29 +9,29 @@
 #include <pfvox/pf_vox.hpp>
 
 namespace pfvox {
-
+/// How a source becomes a file.
 struct ConvertSettings {
-    ImportSettings import;
-    bool hollow = false;  ///< hollowSolids before the build
-    BuildSettings build;
-    int zstdLevel = 3;
-    Profile profile = Profile::Packed;
+    ImportSettings import;              ///< how the source is read
+    bool hollow = false;                ///< hollowSolids before the build
+    BuildSettings build;                ///< how trees are built
+    int zstdLevel = 3;                  ///< 1 to 19
+    Profile profile = Profile::Packed;  ///< packed or resident
 };
-
+/// What a conversion did.
 struct ConvertReport {
-    std::uint64_t sourceBytes = 0;
-    std::uint64_t outputBytes = 0;
+    std::uint64_t sourceBytes = 0;  ///< read
+    std::uint64_t outputBytes = 0;  ///< written
     std::uint64_t voxels = 0;  ///< of all models, each counted once
     std::uint64_t hollowedVoxels = 0;  ///< of these, voxels that cannot be seen; 0 unless they were looked for
-    std::uint64_t nodes = 0;
-    std::uint64_t leaves = 0;
-    std::uint32_t models = 0;
-    std::uint32_t instances = 0;
-    std::uint32_t materials = 0;
-    double importSeconds = 0.0;
-    double buildSeconds = 0.0;
-    double encodeSeconds = 0.0;
-    double writeSeconds = 0.0;
+    std::uint64_t nodes = 0;  ///< of all trees
+    std::uint64_t leaves = 0;  ///< of all trees
+    std::uint32_t models = 0;  ///< after equal ones were joined
+    std::uint32_t instances = 0;  ///< of models
+    std::uint32_t materials = 0;  ///< after equal ones were joined
+    double importSeconds = 0.0;  ///< reading and decoding the source
+    double buildSeconds = 0.0;  ///< building the trees
+    double encodeSeconds = 0.0;  ///< laying out and compressing
+    double writeSeconds = 0.0;  ///< writing, with the sync
 };
 
 /// xxh3-128 of the source bytes, the settings and the versions of tool and format.

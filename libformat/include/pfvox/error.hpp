@@ -55,8 +55,8 @@ std::string_view toString(ErrorCode code);
 
 /// One failure with its place. `message` says what is wrong and, where there is one, the remedy.
 struct Error {
-    ErrorCode code = ErrorCode::Internal;
-    std::string message;
+    ErrorCode code = ErrorCode::Internal;                     ///< what kind; stable
+    std::string message;                                      ///< what is wrong and what to do
     std::filesystem::path file = {};                          ///< the file at fault; empty while not known
     std::optional<std::uint64_t> offsetBytes = std::nullopt;  ///< where in that file
     std::string context = {};                                 ///< the structure at that place, "chunk nTRN"
@@ -76,17 +76,17 @@ class [[nodiscard]] Result : public tl::expected<T, Error> {
 /// Makes the failing side of a Result.
 [[nodiscard]] tl::unexpected<Error> fail(ErrorCode code, std::string message);
 [[nodiscard]] tl::unexpected<Error> failAt(ErrorCode code, std::uint64_t offsetBytes, std::string context,
-                                           std::string message);
-
+                                           std::string message);  ///< An error with its place in the file.
+/// How much a diagnostic matters.
 enum class Severity : std::uint8_t { Note, Warning };
 
 /// Something the user should know about input that is used all the same. `id` is stable
 /// ("vox-duplicate-voxels"), so that tools can count and tests can match; `message` is for people.
 struct Diagnostic {
-    Severity severity = Severity::Warning;
-    std::string id;
-    std::string message;
-    std::optional<std::uint64_t> offsetBytes = std::nullopt;
+    Severity severity = Severity::Warning;                    ///< note or warning
+    std::string id;                                           ///< stable: "vox-voxels-outside"
+    std::string message;                                      ///< what was seen and what was done about it
+    std::optional<std::uint64_t> offsetBytes = std::nullopt;  ///< in the file, where known
 };
 
 /// Where stages send diagnostics. Implementations are thread-safe: stages report from parallel tasks.
@@ -97,16 +97,16 @@ class Diagnostics {
     Diagnostics& operator=(const Diagnostics&) = delete;
     virtual ~Diagnostics() = default;
 
-    virtual void report(Diagnostic diagnostic) = 0;
+    virtual void report(Diagnostic diagnostic) = 0;  ///< Called as it is met; must not throw.
 
-    void note(std::string id, std::string message);
-    void warn(std::string id, std::string message);
+    void note(std::string id, std::string message);  ///< report() with Severity::Note
+    void warn(std::string id, std::string message);  ///< report() with Severity::Warning
 };
 
 /// Collects diagnostics in the order of their arrival.
 class DiagnosticList final : public Diagnostics {
   public:
-    void report(Diagnostic diagnostic) override;
+    void report(Diagnostic diagnostic) override;  ///< Adds it at the end.
     /// Everything reported so far. Not to be called while another thread reports.
     const std::vector<Diagnostic>& entries() const { return entries_; }
 

@@ -20,10 +20,10 @@ class FileBytes {
   public:
     FileBytes() = default;
     explicit FileBytes(std::size_t size)
-        : data_(std::make_unique_for_overwrite<std::byte[]>(size)), size_(size) {}
-    std::span<std::byte> bytes() { return {data_.get(), size_}; }
-    std::span<const std::byte> bytes() const { return {data_.get(), size_}; }
-    void shrink(std::size_t size) { size_ = size; }
+        : data_(std::make_unique_for_overwrite<std::byte[]>(size)), size_(size) {}  ///< Uninitialised bytes.
+    std::span<std::byte> bytes() { return {data_.get(), size_}; }  ///< all of them
+    std::span<const std::byte> bytes() const { return {data_.get(), size_}; }  ///< all of them
+    void shrink(std::size_t size) { size_ = size; }  ///< Precondition: not larger than now.
 
   private:
     std::unique_ptr<std::byte[]> data_;

@@ -12,7 +12,7 @@
 #include <pfvox/voxel_model.hpp>
 
 namespace pfvox {
-
+/// What hollowing changed.
 struct HollowReport {
     std::uint64_t hiddenVoxels = 0;   ///< voxels that could take any material
     std::uint64_t changedVoxels = 0;  ///< of these, voxels that took another one

@@ -51,8 +51,8 @@ struct ImportSettings {
     int frame = 0;               ///< animation frame
     /// Edge of a voxel in metres. Default: what the file says, else 0.1 (MagicaVoxel has no unit).
     std::optional<double> voxelSizeMetres;
-    SvxSettings svx;
-    VdbSettings vdb;
+    SvxSettings svx;  ///< for .svx only
+    VdbSettings vdb;  ///< for .vdb only
 
     bool operator==(const ImportSettings&) const = default;
 };
@@ -60,7 +60,7 @@ struct ImportSettings {
 /// The settings as text, one spelling for one meaning: what the content key hashes.
 std::string canonicalText(const ImportSettings& settings);
 
-inline constexpr double kDefaultVoxelSizeMetres = 0.1;
+inline constexpr double kDefaultVoxelSizeMetres = 0.1;  ///< where neither source nor settings tell
 
 /// A source format that pfvox reads.
 struct SourceFormat {

@@ -12,23 +12,23 @@ namespace pfvox {
 
 /// A half-open box of whole voxels: min inclusive, max exclusive. Empty when any max <= min.
 struct VoxelBox {
-    glm::ivec3 min{std::numeric_limits<int>::max()};
-    glm::ivec3 max{std::numeric_limits<int>::min()};
+    glm::ivec3 min{std::numeric_limits<int>::max()};  ///< inclusive
+    glm::ivec3 max{std::numeric_limits<int>::min()};  ///< exclusive
 
-    bool empty() const { return max.x <= min.x || max.y <= min.y || max.z <= min.z; }
+    bool empty() const { return max.x <= min.x || max.y <= min.y || max.z <= min.z; }  ///< Whether no voxel is in it.
     /// Edge lengths; 64-bit, because two int32 corners can be farther apart than int32 reaches.
     glm::i64vec3 size() const { return empty() ? glm::i64vec3{0} : glm::i64vec3{max} - glm::i64vec3{min}; }
     void include(const VoxelBox& other) {
         min = glm::min(min, other.min);
         max = glm::max(max, other.max);
-    }
+    }  ///< Grows to hold the other one, too.
     bool operator==(const VoxelBox&) const = default;
 };
 
 /// An affine transform as glm's 4 columns of 3: columns 0..2 the linear part, column 3 the translation.
 /// Names say the spaces: worldFromModel * vec4(pModel, 1) = pWorld.
 using Affine = glm::dmat4x3;
-
+/// Changes nothing.
 inline Affine identityAffine() {
     return Affine{1.0};
 }

@@ -37,25 +37,25 @@
 namespace pfvox {
 
 namespace node {
-inline constexpr std::uint32_t kFarBit = 1u << 16;
-inline constexpr std::uint32_t kPointerShift = 17;
-inline constexpr std::uint32_t kMaxNearPointer = (1u << 15) - 1;
-
+inline constexpr std::uint32_t kFarBit = 1u << 16;  ///< set: the pointer is an index into the far table
+inline constexpr std::uint32_t kPointerShift = 17;  ///< position of the pointer
+inline constexpr std::uint32_t kMaxNearPointer = (1u << 15) - 1;  ///< nodes; what is further needs the far table
+/// Child slots that are leaves.
 constexpr std::uint32_t leafMask(std::uint32_t descriptor) {
     return descriptor & 0xffu;
 }
 constexpr std::uint32_t validMask(std::uint32_t descriptor) {
     return (descriptor >> 8) & 0xffu;
-}
+}  ///< Child slots that exist.
 constexpr std::uint32_t innerMask(std::uint32_t descriptor) {
     return validMask(descriptor) & ~leafMask(descriptor);
-}
+}  ///< Child slots that are nodes.
 constexpr bool isFar(std::uint32_t descriptor) {
     return (descriptor & kFarBit) != 0;
-}
+}  ///< Whether the pointer is an index into the far table.
 constexpr std::uint32_t pointer(std::uint32_t descriptor) {
     return descriptor >> kPointerShift;
-}
+}  ///< First inner child, relative, in nodes; or the index into the far table.
 }  // namespace node
 
 /// A tree of child descriptors. Node 0 is the root, a cube of edge 2^depth.
@@ -83,44 +83,44 @@ struct NodeLod {
     /// visible.
     std::vector<std::uint16_t> materials;
 
-    bool empty() const { return colors.empty(); }
+    bool empty() const { return colors.empty(); }  ///< Whether the asset has no levels of detail.
     bool operator==(const NodeLod&) const = default;
 };
 
 /// At most 256^3 voxels of a model: its own tree, values and palette.
 struct OctreeRegion {
-    glm::ivec3 originVoxels{0};  ///< lower corner in model voxels
-    NodeTree tree;
+    glm::ivec3 originVoxels{0};          ///< lower corner in model voxels
+    NodeTree tree;                       ///< shape
     PooledVector<std::uint32_t> lookup;  ///< one word for each node
     PooledVector<std::uint8_t> values;   ///< palette indices of valueBytes() each, little endian
     std::vector<MaterialIndex> palette;  ///< palette index -> material of the asset, ascending
     NodeLod lod;                         ///< empty unless asked for
-    std::uint64_t voxelCount = 0;
-    VoxelBox bounds;  ///< tight, in model voxels
+    std::uint64_t voxelCount = 0;        ///< solid ones
+    VoxelBox bounds;                     ///< tight, in model voxels
 
     /// Has the arrays take their memory from a pool. Precondition: they are empty.
     void usePool(const std::shared_ptr<MemoryPool>& pool);
 
-    std::size_t valueBytes() const { return palette.size() <= 256 ? 1 : 2; }
-    std::size_t valueCount() const { return values.size() / valueBytes(); }
+    std::size_t valueBytes() const { return palette.size() <= 256 ? 1 : 2; }  ///< Size of a value: 1 or 2.
+    std::size_t valueCount() const { return values.size() / valueBytes(); }   ///< Number of values.
     std::uint32_t value(std::size_t index) const {
         return valueBytes() == 1
                    ? values[index]
                    : static_cast<std::uint32_t>(values[2 * index] | (values[2 * index + 1] << 8));
-    }
+    }  ///< Palette index at `index`.
 };
 
 /// One model: a top tree whose leaves are regions, in node order then slot order. A model of at most 256^3
 /// has an empty top tree and one region. An empty model has no region.
 struct OctreeModel {
-    std::string name;
+    std::string name;                           ///< of the source
     std::uint32_t depth = 0;                    ///< levels in all; the octree cube has edge 2^depth
     glm::ivec3 originVoxels{0};                 ///< lower corner of the octree cube in model voxels
     NodeTree topTree;                           ///< depth = max(0, OctreeModel::depth - 8)
     std::vector<std::uint32_t> topFirstRegion;  ///< for each top node, the region of its first leaf slot
-    std::vector<OctreeRegion> regions;
-    std::uint64_t voxelCount = 0;
-    VoxelBox bounds;
+    std::vector<OctreeRegion> regions;          ///< in Morton order of their places
+    std::uint64_t voxelCount = 0;               ///< solid ones
+    VoxelBox bounds;                            ///< of its solid voxels
 
     /// Makes topFirstRegion from topTree.
     void indexRegions();
@@ -131,9 +131,9 @@ struct OctreeModel {
 
 /// What the builder and the PF_VOX decoder return.
 struct OctreeAsset : AssetInfo {
-    std::vector<OctreeModel> models;
+    std::vector<OctreeModel> models;  ///< what instances refer to by index
 };
-
+/// How trees are built.
 struct BuildSettings {
     bool lod = false;  ///< make OctreeRegion::lod
 };
@@ -150,7 +150,7 @@ Result<OctreeAsset> buildOctrees(const VoxelAsset& asset, const Limits& limits,
 struct VoxelList {
     std::span<const PackedVoxel> voxels;  ///< in any order; of several in one place the last one wins
     glm::ivec3 origin{0};                 ///< the model voxel that (0, 0, 0) of the list is
-    std::string name = {};
+    std::string name = {};                ///< of the model
 };
 
 /// Builds one octree straight from a list. The result is that of VoxelModel::insert() and buildOctrees(), but
@@ -160,17 +160,17 @@ Result<OctreeModel> buildOctree(const VoxelList& list, std::size_t materialCount
 
 /// Every voxel of the octree back in a sparse grid; leaves larger than a voxel become tiles.
 VoxelModel toVoxelModel(const OctreeModel& model);
-
+/// Counts over all trees of an asset.
 struct OctreeStatistics {
-    std::uint64_t voxels = 0;
-    std::uint64_t nodes = 0;  ///< child descriptors, top tree included
-    std::uint64_t leaves = 0;
-    std::uint64_t values = 0;
-    std::uint64_t farPointers = 0;
+    std::uint64_t voxels = 0;       ///< solid ones, each model once
+    std::uint64_t nodes = 0;        ///< child descriptors, top tree included
+    std::uint64_t leaves = 0;       ///< of any size
+    std::uint64_t values = 0;       ///< of all attribute lookups
+    std::uint64_t farPointers = 0;  ///< entries of all far tables
     std::uint64_t gpuBytes =
         0;  ///< nodes + lookup + far table (4 B each) + values (1 B, 2 B past 256 palette entries)
     std::vector<std::uint64_t> voxelsOfMaterial;  ///< by material index of the asset
 };
-OctreeStatistics statistics(const OctreeModel& model, std::size_t materialCount);
+OctreeStatistics statistics(const OctreeModel& model, std::size_t materialCount);  ///< Counts of one model.
 
 }  // namespace pfvox

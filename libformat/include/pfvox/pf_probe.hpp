@@ -30,8 +30,8 @@
 
 namespace pfvox {
 
-inline constexpr std::uint16_t kPfProbeVersionMajor = 1;
-inline constexpr std::uint16_t kPfProbeVersionMinor = 0;
+inline constexpr std::uint16_t kPfProbeVersionMajor = 1;  ///< another one cannot be read
+inline constexpr std::uint16_t kPfProbeVersionMinor = 0;  ///< of what is written; later ones can be read
 
 /// The maps that a probe may have. Their words are those that the GPU reads.
 enum class ProbeLayer : std::uint8_t {
@@ -41,7 +41,7 @@ enum class ProbeLayer : std::uint8_t {
     Irradiance,   ///< u32: I of a surface at the probe, by its normal, R11G11B10F, border of 1
     Moments,  ///< u32: two halves, mean of d and of d^2 with d = min(distance / momentRange, 1), border of 1
 };
-inline constexpr std::size_t kProbeLayerCount = 5;
+inline constexpr std::size_t kProbeLayerCount = 5;    ///< of ProbeLayer
 inline constexpr std::uint32_t kMaxProbeEdge = 8192;  ///< texels along a map
 
 /// "depth-normal", "light", "min-depth", "irradiance", "moments".
@@ -56,14 +56,14 @@ struct ProbeResolution {
 
     /// Texels along the stored map, border included; 0 = absent.
     std::uint32_t edgeOf(ProbeLayer layer) const;
-    bool has(ProbeLayer layer) const { return edgeOf(layer) != 0; }
+    bool has(ProbeLayer layer) const { return edgeOf(layer) != 0; }  ///< Whether probes have this map.
     /// Raw bytes of one probe's map.
     std::uint64_t bytesOf(ProbeLayer layer) const;
     /// Raw bytes of all maps of one probe.
     std::uint64_t bytesPerProbe() const;
     bool operator==(const ProbeResolution&) const = default;
 };
-
+/// The usual sets of maps.
 enum class ProbeProfile : std::uint8_t {
     Custom,
     Thesis,   ///< depth 1024, light 1024, irradiance 8, moments 14: for comparison with the original
@@ -86,16 +86,16 @@ struct DepthEncoding {
 
 /// What the stored light contains: bits of ProbeFieldInfo::lightContent.
 inline constexpr std::uint32_t kLightOfSky = 1u << 0;
-inline constexpr std::uint32_t kLightOfEmitters = 1u << 1;
+inline constexpr std::uint32_t kLightOfEmitters = 1u << 1;    ///< emissive voxels
 inline constexpr std::uint32_t kLightOfBouncedSun = 1u << 2;  ///< sun from the second vertex of a path on
 inline constexpr std::uint32_t kLightOfDirectSun =
     1u << 3;  ///< sun at the first vertex; pfvox leaves it to the viewer
 inline constexpr std::uint32_t kLightOfSpecular = 1u << 4;  ///< paths over metal and glass
-inline constexpr std::uint32_t kKnownLight = (1u << 5) - 1;
+inline constexpr std::uint32_t kKnownLight = (1u << 5) - 1;  ///< all bits that have a meaning
 
 /// How the light was computed.
 struct ProbeBakeSettings {
-    std::uint64_t seed = 0;
+    std::uint64_t seed = 0;        ///< of the random numbers
     std::uint32_t tracedEdge = 0;  ///< edge of the maps that were traced, before any reduction
     std::uint32_t minSamples = 0;  ///< paths a texel
     std::uint32_t maxSamples = 0;  ///< equal to minSamples when not adaptive
@@ -106,31 +106,31 @@ struct ProbeBakeSettings {
 
 /// A half-open range of probe indices.
 struct ProbeRange {
-    std::uint32_t first = 0;
-    std::uint32_t end = 0;
+    std::uint32_t first = 0;  ///< inclusive
+    std::uint32_t end = 0;    ///< exclusive
 
-    std::uint32_t size() const { return end - first; }
-    bool contains(std::uint32_t probe) const { return probe >= first && probe < end; }
+    std::uint32_t size() const { return end - first; }  ///< Number of probes.
+    bool contains(std::uint32_t probe) const { return probe >= first && probe < end; }  ///< Whether the probe is in it.
     bool operator==(const ProbeRange&) const = default;
 };
 
 /// Everything about a field but its probes.
 struct ProbeFieldInfo {
-    ProbeGrid grid;
+    ProbeGrid grid;  ///< where probes stand
     ProbeRange range;  ///< the probes of this file: a shard has a part of the grid's
-    ProbeResolution resolution;
-    DepthEncoding depth;
-    std::uint32_t lightContent = 0;
-    ProbeBakeSettings settings;
+    ProbeResolution resolution;  ///< edges of the maps
+    DepthEncoding depth;  ///< meaning of the depth codes
+    std::uint32_t lightContent = 0;  ///< kLightOf... bits
+    ProbeBakeSettings settings;  ///< how the light was computed
     ContentKey sceneHash;    ///< of the scene as it was baked: models, transforms, materials, sun, sky
     ContentKey shaderHash;   ///< of the programs that computed the light
     std::string deviceName;  ///< of the GPU and its driver; equal bits are promised for equal names only
     std::string toolName;    ///< "probe-bake 0.1.0"
     bool operator==(const ProbeFieldInfo&) const = default;
 
-    bool isWhole() const { return range == ProbeRange{0, static_cast<std::uint32_t>(grid.probeCount())}; }
+    bool isWhole() const { return range == ProbeRange{0, static_cast<std::uint32_t>(grid.probeCount())}; }  ///< whole
 };
-
+/// Where a probe stands.
 enum class ProbeState : std::uint8_t {
     Active,     ///< stands on its grid point
     Inactive,   ///< no free place near its grid point: has no layers, and no lookup reads it
@@ -141,29 +141,29 @@ std::string_view toString(ProbeState state);
 
 /// What is known about one probe without its maps.
 struct ProbeRecord {
-    glm::vec3 offset{0.0f};  ///< from the grid point, metres; not 0 only when Relocated
-    ProbeState state = ProbeState::Active;
-    std::uint16_t flags = 0;       ///< none yet: 0
-    float error = 0.0f;            ///< relative standard error of I, mean over the tiles
-    float cappedTileShare = 0.0f;  ///< share of the tiles that stopped at maxSamples
+    glm::vec3 offset{0.0f};                 ///< from the grid point, metres; not 0 only when Relocated
+    ProbeState state = ProbeState::Active;  ///< on its grid point, moved, or without a place
+    std::uint16_t flags = 0;                ///< none yet: 0
+    float error = 0.0f;                     ///< relative standard error of I, mean over the tiles
+    float cappedTileShare = 0.0f;           ///< share of the tiles that stopped at maxSamples
     /// xxh3-64 over offset, state, flags, error, share and the hashes of all layers. Writers compute it and
     /// take no notice of what stands here; readers have checked it. Equal hashes = equal probes.
     std::uint64_t hash = 0;
     bool operator==(const ProbeRecord&) const = default;
 
-    bool isActive() const { return state != ProbeState::Inactive; }
+    bool isActive() const { return state != ProbeState::Inactive; }  ///< Whether it has maps.
 };
 
 /// One probe with its maps; a map that the resolution does not have is empty, and so are all of an inactive
 /// one.
 struct ProbeData {
-    ProbeRecord record;
+    ProbeRecord record;  ///< what is stored beside the maps
     ContentKey inputHash;  ///< of everything that decided the content of this probe; zero = unknown
-    std::vector<std::uint32_t> depthNormal;
-    std::vector<std::uint32_t> light;
-    std::vector<std::uint16_t> minDepth;
-    std::vector<std::uint32_t> irradiance;
-    std::vector<std::uint32_t> moments;
+    std::vector<std::uint32_t> depthNormal;  ///< depth^2 words, row by row, see ProbeLayer
+    std::vector<std::uint32_t> light;  ///< light^2 words
+    std::vector<std::uint16_t> minDepth;  ///< (depth / 16)^2 words
+    std::vector<std::uint32_t> irradiance;  ///< (irradiance + 2)^2 words: with the border
+    std::vector<std::uint32_t> moments;  ///< (moments + 2)^2 words: with the border
     bool operator==(const ProbeData&) const = default;
 
     /// The words of a layer as bytes.
@@ -172,29 +172,29 @@ struct ProbeData {
     std::span<std::byte> resizeLayer(ProbeLayer layer, std::uint64_t bytes);
 };
 
-inline constexpr std::uint32_t kNoProbe = 0xffffffffu;
-inline constexpr std::size_t kProbesPerCell = 4;
+inline constexpr std::uint32_t kNoProbe = 0xffffffffu;  ///< an index that names no probe
+inline constexpr std::size_t kProbesPerCell = 4;        ///< indices in a cell
 
 /// For each cell of a box up to four probes that see what is in it, best first. Cell (x, y, z) has the index
 /// x + counts.x * (y + counts.y * z).
 struct ProximityGrid {
-    glm::vec3 start{0.0f};  ///< lower corner of cell (0, 0, 0), metres
-    glm::vec3 step{1.0f};   ///< edges of a cell, metres, > 0
-    glm::uvec3 counts{0u};
+    glm::vec3 start{0.0f};              ///< lower corner of cell (0, 0, 0), metres
+    glm::vec3 step{1.0f};               ///< edges of a cell, metres, > 0
+    glm::uvec3 counts{0u};              ///< cells along x, y, z
     std::vector<std::uint32_t> probes;  ///< kProbesPerCell a cell; kNoProbe at the end of a shorter list
 
-    std::uint64_t cellCount() const { return std::uint64_t{counts.x} * counts.y * counts.z; }
+    std::uint64_t cellCount() const { return std::uint64_t{counts.x} * counts.y * counts.z; }  ///< of the grid
     bool operator==(const ProximityGrid&) const = default;
 };
 
 /// A field in memory.
 struct ProbeField {
-    ProbeFieldInfo info;
-    std::vector<ProbeData> probes;  ///< probe info.range.first and those behind it
-    std::optional<ProximityGrid> proximity;
+    ProbeFieldInfo info;                     ///< all but the probes
+    std::vector<ProbeData> probes;           ///< probe info.range.first and those behind it
+    std::optional<ProximityGrid> proximity;  ///< none in shards
     bool operator==(const ProbeField&) const = default;
 };
-
+/// How a file is written.
 struct ProbeEncodeSettings {
     int zstdLevel = 1;      ///< 1 to 19; higher ones gain little, as the maps are predicted before
     ContentKey contentKey;  ///< kept in the header, for builds that skip what is up to date
@@ -209,8 +209,8 @@ std::uint64_t hashOf(const ProbeData& probe);
 /// Whether a field can be written: domains of all values, sizes of maps, ranges, references of the proximity
 /// grid. Errors: BadValue, BadStructure, BadReference.
 Result<void> checkProbeInfo(const ProbeFieldInfo& info);
-Result<void> checkProbeData(const ProbeFieldInfo& info, std::uint32_t probe, const ProbeData& data);
-Result<void> checkProximityGrid(const ProbeFieldInfo& info, const ProximityGrid& grid);
+Result<void> checkProbeData(const ProbeFieldInfo& info, std::uint32_t probe, const ProbeData& data);  ///< sizes
+Result<void> checkProximityGrid(const ProbeFieldInfo& info, const ProximityGrid& grid);  ///< references
 
 /// The bytes of a PF_PROBE file, equal for equal input. Errors: those of the checks above.
 Result<std::vector<std::byte>> encodePfProbe(const ProbeField& field, const ProbeEncodeSettings& settings);

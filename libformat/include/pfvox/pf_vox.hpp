@@ -17,8 +17,8 @@
 
 namespace pfvox {
 
-inline constexpr std::uint16_t kPfVoxVersionMajor = 1;
-inline constexpr std::uint16_t kPfVoxVersionMinor = 0;
+inline constexpr std::uint16_t kPfVoxVersionMajor = 1;  ///< another one cannot be read
+inline constexpr std::uint16_t kPfVoxVersionMinor = 0;  ///< of what is written; later ones can be read
 
 /// Required feature bits of the header.
 inline constexpr std::uint32_t kPfVoxResident = 1u << 0;  ///< "resident": Profile::Resident
@@ -29,9 +29,9 @@ inline constexpr std::uint32_t kPfVoxHollow = 1u << 0;  ///< "hollow": AssetInfo
 /// xxh3-128 of everything that decides the content of an output: inputs, settings, tool and format version.
 /// All zero = unknown.
 struct ContentKey {
-    std::array<std::uint8_t, 16> bytes{};
+    std::array<std::uint8_t, 16> bytes{};  ///< in the order of the hex text
     bool operator==(const ContentKey&) const = default;
-    std::string hex() const;
+    std::string hex() const;  ///< 32 lower case digits
 };
 
 /// Two forms of the same content. Which to use when: docs/decisions/007-resident.md.
@@ -39,11 +39,11 @@ enum class Profile : std::uint8_t {
     Packed,    ///< only what cannot be computed, compressed: smallest
     Resident,  ///< the words that the GPU reads, raw and aligned: 5 to 15 times as large, nothing to compute
 };
-
+/// How a file is written.
 struct EncodeSettings {
-    int zstdLevel = 3;      ///< 1 to 19
-    ContentKey contentKey;  ///< kept in the header, for builds that skip what is up to date
-    Profile profile = Profile::Packed;
+    int zstdLevel = 3;                  ///< 1 to 19
+    ContentKey contentKey;              ///< kept in the header, for builds that skip what is up to date
+    Profile profile = Profile::Packed;  ///< packed or resident
 };
 
 /// The bytes of a PF_VOX file. Equal input and settings give equal bytes for any number of
@@ -61,27 +61,27 @@ Result<OctreeAsset> decodePfVox(std::span<const std::byte> bytes, const Limits& 
 Result<OctreeAsset> loadPfVox(const std::filesystem::path& file, const Limits& limits,
                               Diagnostics& diagnostics);
 
-inline constexpr std::uint32_t kWholeFile = 0xffffffffu;
+inline constexpr std::uint32_t kWholeFile = 0xffffffffu;  ///< a section that belongs to no model or region
 
 /// One entry of the section table, for reports.
 struct PfVoxSection {
-    std::string fourcc;
-    std::uint32_t regionId = 0;  ///< kWholeFile when the section belongs to the whole file
-    std::string codec;           ///< "raw" or "zstd"
-    std::uint64_t offsetBytes = 0;
-    std::uint64_t storedBytes = 0;
-    std::uint64_t rawBytes = 0;
+    std::string fourcc;             ///< four characters: "NODE"
+    std::uint32_t regionId = 0;     ///< kWholeFile when the section belongs to the whole file
+    std::string codec;              ///< "raw" or "zstd"
+    std::uint64_t offsetBytes = 0;  ///< in the file
+    std::uint64_t storedBytes = 0;  ///< as it lies there
+    std::uint64_t rawBytes = 0;     ///< after decompression
 };
 
 /// Header and section table, without decoding anything else.
 struct PfVoxHeader {
-    std::uint16_t versionMajor = 0;
-    std::uint16_t versionMinor = 0;
-    std::uint32_t requiredFeatures = 0;
-    std::uint32_t optionalFeatures = 0;
-    std::uint64_t fileBytes = 0;
-    ContentKey contentKey;
-    std::vector<PfVoxSection> sections;
+    std::uint16_t versionMajor = 0;      ///< of the file
+    std::uint16_t versionMinor = 0;      ///< of the file
+    std::uint32_t requiredFeatures = 0;  ///< bits that a reader must know
+    std::uint32_t optionalFeatures = 0;  ///< bits that it may ignore
+    std::uint64_t fileBytes = 0;         ///< as the header announces them
+    ContentKey contentKey;               ///< of what it was made from
+    std::vector<PfVoxSection> sections;  ///< in the order of the file
 
     /// The names of the features: "resident", "hollow"; unknown ones as "bit 7".
     std::vector<std::string> featureNames() const;
@@ -91,10 +91,10 @@ Result<PfVoxHeader> readPfVoxHeader(std::span<const std::byte> bytes);
 
 /// One thing that is wrong with a file. `id` is the stable spelling of an ErrorCode.
 struct Finding {
-    std::string id;
-    std::string context;  ///< the section, empty when it is about the file as a whole
-    std::optional<std::uint64_t> offsetBytes;
-    std::string message;
+    std::string id;                            ///< stable; the spelling of an ErrorCode
+    std::string context;                       ///< the section, empty when it is about the file as a whole
+    std::optional<std::uint64_t> offsetBytes;  ///< in the file, where known
+    std::string message;                       ///< what is wrong
 };
 
 /// Every finding, not only the first: decodes each section that can still be reached. Empty = valid.

@@ -31,7 +31,7 @@ class MemoryPool {
     /// Uninitialised memory, aligned to kAlignment. Throws std::bad_alloc.
     void* take(std::size_t bytes);
 
-    static constexpr std::size_t kAlignment = 64;
+    static constexpr std::size_t kAlignment = 64;  ///< of every piece, bytes
     /// What take() uses up for this many bytes: sum it up for `expectedBytes`.
     static constexpr std::size_t rounded(std::size_t bytes) {
         return (bytes + kAlignment - 1) / kAlignment * kAlignment;
@@ -56,16 +56,16 @@ class PoolAllocator {
     static_assert(std::is_trivially_copyable_v<T> && alignof(T) <= MemoryPool::kAlignment);
 
   public:
-    using value_type = T;
-    using propagate_on_container_move_assignment = std::true_type;
-    using propagate_on_container_swap = std::true_type;
-    using is_always_equal = std::false_type;
+    using value_type = T;                                           ///< for std::allocator_traits
+    using propagate_on_container_move_assignment = std::true_type;  ///< the pool goes with the memory
+    using propagate_on_container_swap = std::true_type;             ///< the pool goes with the memory
+    using is_always_equal = std::false_type;                        ///< pools differ
 
     PoolAllocator() = default;
-    explicit PoolAllocator(std::shared_ptr<MemoryPool> pool) : pool_(std::move(pool)) {}
+    explicit PoolAllocator(std::shared_ptr<MemoryPool> pool) : pool_(std::move(pool)) {}  ///< Takes from this pool.
     template <class U>
-    explicit PoolAllocator(const PoolAllocator<U>& other) : pool_(other.pool()) {}
-
+    explicit PoolAllocator(const PoolAllocator<U>& other) : pool_(other.pool()) {}  ///< The same pool for another type.
+    /// Throws std::bad_alloc, as allocators do.
     T* allocate(std::size_t count) {
         if (count > std::size_t(-1) / sizeof(T)) throw std::bad_array_new_length();
         const std::size_t bytes = count * sizeof(T);
@@ -73,7 +73,7 @@ class PoolAllocator {
     }
     void deallocate(T* p, std::size_t) {
         if (pool_ == nullptr) ::operator delete(p);
-    }
+    }  ///< Does nothing: memory is returned with the pool.
 
     /// New elements stay as they are.
     template <class U>
@@ -83,10 +83,10 @@ class PoolAllocator {
     template <class U, class... Arguments>
     void construct(U* p, Arguments&&... arguments) {
         ::new (static_cast<void*>(p)) U(std::forward<Arguments>(arguments)...);
-    }
+    }  ///< Default initialisation leaves numbers as they are.
 
-    PoolAllocator select_on_container_copy_construction() const { return {}; }
-    const std::shared_ptr<MemoryPool>& pool() const { return pool_; }
+    PoolAllocator select_on_container_copy_construction() const { return {}; }  ///< Copies use the heap.
+    const std::shared_ptr<MemoryPool>& pool() const { return pool_; }           ///< null = the heap
     bool operator==(const PoolAllocator& other) const { return pool_ == other.pool_; }
 
   private:
@@ -94,6 +94,6 @@ class PoolAllocator {
 };
 
 template <class T>
-using PooledVector = std::vector<T, PoolAllocator<T>>;
+using PooledVector = std::vector<T, PoolAllocator<T>>;  ///< A vector whose memory may come from a pool.
 
 }  // namespace pfvox

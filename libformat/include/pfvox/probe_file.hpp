@@ -19,10 +19,10 @@ namespace pfvox {
 
 /// Where a layer lies in its file.
 struct ProbeFrame {
-    std::uint64_t offsetBytes = 0;
-    std::uint32_t storedBytes = 0;
-    std::string_view codec;     ///< "raw" or "predicted"
-    std::uint64_t rawHash = 0;  ///< xxh3-64 of the words
+    std::uint64_t offsetBytes = 0;  ///< in the file
+    std::uint32_t storedBytes = 0;  ///< after compression
+    std::string_view codec;         ///< "raw" or "predicted"
+    std::uint64_t rawHash = 0;      ///< xxh3-64 of the words
 };
 
 /// Random access to a file. Opening reads and checks everything but the maps; each map is checked when it is
@@ -39,14 +39,14 @@ class ProbeFileReader {
     ProbeFileReader& operator=(ProbeFileReader&&) noexcept;
     ~ProbeFileReader();
 
-    const ProbeFieldInfo& info() const;
-    ContentKey contentKey() const;
-    std::uint64_t fileBytes() const;
-    const std::optional<ProximityGrid>& proximity() const;
+    const ProbeFieldInfo& info() const;                     ///< all but the probes
+    ContentKey contentKey() const;                          ///< of what it was made from
+    std::uint64_t fileBytes() const;                        ///< of the file
+    const std::optional<ProximityGrid>& proximity() const;  ///< none in shards
 
     /// Precondition of all that follow: info().range.contains(probe).
     const ProbeRecord& record(std::uint32_t probe) const;
-    const ContentKey& inputHash(std::uint32_t probe) const;
+    const ContentKey& inputHash(std::uint32_t probe) const;  ///< of what the probe was made from
     /// Where the probe stands, metres.
     glm::vec3 positionOf(std::uint32_t probe) const;
     /// Whether there is something to read: not for layers that the file does not have, nor for inactive
@@ -73,14 +73,14 @@ class ProbeFileReader {
 /// decodePfProbe and validatePfProbe on a file; validation needs the memory of one probe only.
 Result<ProbeField> loadPfProbe(const std::filesystem::path& file, const Limits& limits,
                                Diagnostics& diagnostics);
-std::vector<Finding> validatePfProbeFile(const std::filesystem::path& file, const Limits& limits);
+std::vector<Finding> validatePfProbeFile(const std::filesystem::path& file, const Limits& limits);  ///< all of them
 
 /// "out.pf_probe" -> "out.pf_probe.journal".
 std::filesystem::path probeJournalPath(const std::filesystem::path& output);
-
+/// How a file is begun.
 struct ProbeWriteSettings {
-    ProbeEncodeSettings encode;
-    bool resume = false;  ///< take what a journal beside the output holds; else begin a new one
+    ProbeEncodeSettings encode;  ///< key and compression
+    bool resume = false;         ///< take what a journal beside the output holds; else begin a new one
 };
 
 /// Writes a file probe by probe.
@@ -121,9 +121,9 @@ class ProbeFileWriter {
     explicit ProbeFileWriter(std::unique_ptr<State> state);
     std::unique_ptr<State> state_;
 };
-
+/// What the joined file gets beside the probes.
 struct ProbeMergeSettings {
-    ContentKey contentKey;
+    ContentKey contentKey;                   ///< zero: it is never up to date
     std::optional<ProximityGrid> proximity;  ///< for the output; those of the inputs are dropped, but a
                                              ///< single input's is kept when none is given here
     bool allowPart = false;                  ///< the output may be a shard again, as long as it has no holes

@@ -16,12 +16,13 @@ namespace pfvox {
 /// What leaves the surfaces that the texels see towards the probe, emission + albedo * (E_direct / pi + I),
 /// and the sky's radiance where they see none. Holds edge * edge values.
 struct RadianceMap {
-    std::uint32_t edge = 0;
-    std::span<const glm::vec3> texels;
+    std::uint32_t edge = 0;             ///< texels along each side
+    std::span<const glm::vec3> texels;  ///< edge * edge, row by row
 };
+/// Distances by direction, octahedral.
 struct DistanceMap {
-    std::uint32_t edge = 0;
-    std::span<const float> texels;
+    std::uint32_t edge = 0;         ///< texels along each side
+    std::span<const float> texels;  ///< edge * edge, metres
 };
 
 /// ProbeLayer::Irradiance: E / pi for each normal, by quadrature over all texels with their solid angles. The

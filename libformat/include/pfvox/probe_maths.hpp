@@ -13,7 +13,7 @@ inline constexpr std::uint32_t kDepthMissCode = 65535;  ///< the texel sees no s
 
 /// Direction -> [-1, 1]^2 and back; +z in the middle.
 glm::vec2 octEncode(glm::vec3 direction);
-glm::vec3 octDecode(glm::vec2 octahedral);
+glm::vec3 octDecode(glm::vec2 octahedral);  ///< The unit vector at octahedral coordinates in [-1, 1]^2.
 /// Of the centre of texel (x, y) of a map of `edge` texels.
 glm::vec3 directionOfTexel(std::uint32_t x, std::uint32_t y, std::uint32_t edge);
 /// Word index of the texel that a direction falls into.
@@ -26,7 +26,7 @@ glm::ivec2 borderSource(glm::ivec2 texel, int interior);
 /// Codes of distances, with what must be computed once.
 class DepthCoder {
   public:
-    explicit DepthCoder(const DepthEncoding& encoding);
+    explicit DepthCoder(const DepthEncoding& encoding);  ///< Precondition: scale and far are > 0.
     /// 0 to 65534; distances beyond Far have the code of Far.
     std::uint32_t encode(float metres) const;
     /// Precondition: code != kDepthMissCode.
@@ -41,17 +41,17 @@ class DepthCoder {
 
 /// Word of ProbeLayer::DepthNormal, and its parts.
 std::uint32_t packDepthNormal(std::uint32_t depthCode, glm::vec3 normal);
-std::uint32_t depthCodeOf(std::uint32_t word);
-glm::vec3 normalOf(std::uint32_t word);
+std::uint32_t depthCodeOf(std::uint32_t word);  ///< 0 to 65535; 65535 = miss
+glm::vec3 normalOf(std::uint32_t word);         ///< unit; of a DepthNormal word
 
 /// Word of ProbeLayer::Light and Irradiance: R11G11B10F, nearest with ties to even; negative and NaN become
 /// 0, what is too large the largest value (65024 red and green, 64512 blue).
 std::uint32_t packLight(glm::vec3 light);
-glm::vec3 unpackLight(std::uint32_t word);
+glm::vec3 unpackLight(std::uint32_t word);  ///< linear RGB
 
 /// Word of ProbeLayer::Moments.
 std::uint32_t packMoments(glm::vec2 moments);
-glm::vec2 unpackMoments(std::uint32_t word);
+glm::vec2 unpackMoments(std::uint32_t word);  ///< mean of d, mean of d^2
 
 /// Whether a texel sees a surface point: the stored distance agrees within 1 cm and 0.75 texels, seen along
 /// the surface, and the stored normal within 26 degrees. `word` is that of texelIndex(toPoint, edge);

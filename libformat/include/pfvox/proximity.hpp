@@ -20,8 +20,8 @@ namespace pfvox {
 
 /// A point on a surface, world space, metres.
 struct SurfaceSample {
-    glm::vec3 position{0.0f};
-    glm::vec3 normal{0.0f};  ///< unit, outward
+    glm::vec3 position{0.0f};  ///< metres
+    glm::vec3 normal{0.0f};    ///< unit, outward
 };
 
 /// At most so many samples of a cell count: of more, so many at equal distances in their list.
@@ -31,33 +31,33 @@ inline constexpr std::size_t kMaxSamplesPerCell = 56;
 struct CellSurfaces {
     std::vector<std::uint32_t> cells;      ///< those that hold surface, ascending
     std::vector<std::size_t> firstOfCell;  ///< one for each of them and one more: where its samples begin
-    std::vector<SurfaceSample> samples;
+    std::vector<SurfaceSample> samples;    ///< cell by cell
 };
 /// Sorts samples into cells, each in the order given; those outside the box are left out. A point on a face
 /// between two cells belongs to the one that its surface is seen from.
 CellSurfaces sortIntoCells(std::span<const SurfaceSample> samples, const ProximityGrid& shape);
-
+/// What a proximity grid is made from.
 struct ProximityInput {
     const ProbeFieldInfo& info;            ///< needs depth maps; the range does not matter
     std::span<const ProbeRecord> records;  ///< of all probes of the grid
     /// The DepthNormal words of an active probe. Called once for each that is a candidate, from several
     /// threads.
     std::function<Result<std::vector<std::uint32_t>>(std::uint32_t probe)> depthNormal;
-    const ProximityGrid& shape;  ///< start, step and counts of the result
-    const CellSurfaces& surfaces;
+    const ProximityGrid& shape;    ///< start, step and counts of the result
+    const CellSurfaces& surfaces;  ///< by cell of `shape`
 };
-
+/// How well the probes see the surfaces.
 struct ProximityReport {
-    std::uint64_t surfaceCells = 0;
+    std::uint64_t surfaceCells = 0;    ///< cells that hold surface
     std::uint64_t uncoveredCells = 0;  ///< hold surface of which no probe sees a sample
     std::uint64_t samples = 0;         ///< surface samples that counted
     std::uint64_t seenSamples = 0;     ///< of these, seen by a probe that their cell names
     std::uint64_t pairsTested = 0;     ///< of a cell and a candidate
 };
-
+/// The grid and how good it is.
 struct ProximityBuild {
-    ProximityGrid grid;
-    ProximityReport report;
+    ProximityGrid grid;      ///< as PF_PROBE stores it
+    ProximityReport report;  ///< for messages
 };
 
 /// Errors: BadStructure (no depth maps, wrong number of records or words); those of checkProximityGrid and of

@@ -22,11 +22,11 @@ enum class Face : std::uint8_t { MinusX, PlusX, MinusY, PlusY, MinusZ, PlusZ, In
 
 /// In the world, in metres. The direction has any length but zero; t counts in its lengths.
 struct ReferenceRay {
-    glm::dvec3 origin{0.0};
-    glm::dvec3 direction{0.0, 0.0, -1.0};
-    double tMax = std::numeric_limits<double>::infinity();
+    glm::dvec3 origin{0.0};                                 ///< metres
+    glm::dvec3 direction{0.0, 0.0, -1.0};                   ///< any length but 0
+    double tMax = std::numeric_limits<double>::infinity();  ///< in lengths of the direction
 };
-
+/// The first surface on a ray.
 struct ReferenceHit {
     double t = 0.0;              ///< 0 when the ray starts in a solid voxel
     std::uint32_t instance = 0;  ///< index into OctreeAsset::instances
@@ -35,7 +35,7 @@ struct ReferenceHit {
     glm::dvec3 normal{0.0};      ///< in the world, unit length, towards the ray; zero for Face::Inside
     MaterialIndex material = 0;  ///< of the asset
 };
-
+/// Casts rays the obvious way, in double precision: the oracle. Holds references; thread-safe.
 class ReferenceCaster {
   public:
     /// Instances that are hidden, on a hidden layer, or of a transform without inverse are left out.

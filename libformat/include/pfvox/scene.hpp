@@ -33,10 +33,10 @@ struct Sun {
 
 /// Radiance from infinitely far away, by the height of the direction. All three the same = a constant sky.
 struct Sky {
-    glm::dvec3 zenith{0.30, 0.48, 0.80};
-    glm::dvec3 horizon{0.72, 0.80, 0.88};
-    glm::dvec3 ground{0.24, 0.23, 0.22};
-    bool isConstant() const { return zenith == horizon && horizon == ground; }
+    glm::dvec3 zenith{0.30, 0.48, 0.80};  ///< radiance straight up
+    glm::dvec3 horizon{0.72, 0.80, 0.88};  ///< radiance
+    glm::dvec3 ground{0.24, 0.23, 0.22};  ///< radiance straight down
+    bool isConstant() const { return zenith == horizon && horizon == ground; }  ///< Whether it is the same everywhere.
     bool operator==(const Sky&) const = default;
 };
 
@@ -44,8 +44,8 @@ struct Sky {
 struct ProbeGridRequest {
     std::optional<glm::dvec3> position;    ///< of probe (0, 0, 0)
     std::optional<glm::dvec3> stepMetres;  ///< from probe to probe along each axis
-    std::optional<glm::uvec3> count;
-    glm::uvec3 proximityCells{64};  ///< cells of the proximity grid over the space of the probes
+    std::optional<glm::uvec3> count;       ///< along x, y, z
+    glm::uvec3 proximityCells{64};         ///< cells of the proximity grid over the space of the probes
     bool operator==(const ProbeGridRequest&) const = default;
 };
 
@@ -53,27 +53,27 @@ struct ProbeGridRequest {
 /// the file keeps its own voxel size.
 struct SceneModel {
     std::string path;  ///< as written, UTF-8; relative paths count from the scene file
-    std::string name = {};
-    glm::dvec3 translateMetres{0.0};
+    std::string name = {};  ///< unique, or empty
+    glm::dvec3 translateMetres{0.0};  ///< world space
     glm::dvec3 rotateRadians{0.0};             ///< about x, then y, then z, the axes fixed: R = Rz Ry Rx
     std::optional<glm::dvec3> cubeEdgeMetres;  ///< scaleVec: world edges of the file's octree cube
-    std::optional<double> metresPerVoxel;
-    bool visible = true;
+    std::optional<double> metresPerVoxel;  ///< edge of a voxel; default: the file's
+    bool visible = true;  ///< false: not loaded
     bool operator==(const SceneModel&) const = default;
 };
-
+/// What a scene.toml says.
 struct Scene {
-    ProbeGridRequest probes;
-    Sun sun;
-    Sky sky;
-    std::vector<Camera> cameras;
-    std::vector<SceneModel> models;
+    ProbeGridRequest probes;         ///< where probes are to stand
+    Sun sun;                         ///< directional light
+    Sky sky;                         ///< light from everywhere else
+    std::vector<Camera> cameras;     ///< by name
+    std::vector<SceneModel> models;  ///< in the order of the file
     bool operator==(const Scene&) const = default;
 };
 
 inline constexpr std::uint64_t kMaxSceneBytes = 16 << 20;  ///< size of a scene file
-inline constexpr std::uint32_t kMaxProbesPerAxis = 1024;
-inline constexpr std::uint32_t kMaxProbes = 1u << 20;
+inline constexpr std::uint32_t kMaxProbesPerAxis = 1024;   ///< along one axis
+inline constexpr std::uint32_t kMaxProbes = 1u << 20;      ///< in one grid
 
 // ---- The file --------------------------------------------------------------------------------------------
 
@@ -100,8 +100,8 @@ Result<void> writeScene(const std::filesystem::path& file, const Scene& scene);
 
 /// A model while its path is being replaced.
 struct ModelPathUse {
-    const SceneModel& model;
-    std::string place;  ///< of the path in the file: "line 12, column 8"
+    const SceneModel& model;  ///< of the scene
+    std::string place;        ///< of the path in the file: "line 12, column 8"
 };
 /// The new path of a model; nothing = leave the text as it is.
 using NewModelPath = std::function<std::optional<std::string>(const ModelPathUse&)>;
@@ -117,11 +117,11 @@ Result<std::string> withModelPaths(std::string_view text, const std::filesystem:
 /// The cube that scaleVec gives the size of: the smallest one of 2^depth voxels that holds the content of all
 /// visible instances of a file, its lower corner at that of the content. In voxels of the file's voxel size.
 struct SourceCube {
-    glm::dvec3 minVoxels{0.0};
-    std::uint32_t depth = 0;
-    double edgeVoxels() const;
+    glm::dvec3 minVoxels{0.0};  ///< lower corner
+    std::uint32_t depth = 0;    ///< edge = 2^depth
+    double edgeVoxels() const;  ///< 2^depth
 };
-SourceCube sourceCube(const OctreeAsset& asset);
+SourceCube sourceCube(const OctreeAsset& asset);  ///< Of a file without content: depth 0.
 
 /// From the file's cube, as [0, 1]^3, to the world: T * S * R * translate(sourceMin / 2^depth).
 Affine worldFromCube(const SceneModel& model, const OctreeAsset& asset);
@@ -132,10 +132,10 @@ Affine worldFromAsset(const SceneModel& model, const OctreeAsset& asset);
 
 /// A box in the world, in metres. Empty when min > max.
 struct WorldBounds {
-    glm::dvec3 min{std::numeric_limits<double>::infinity()};
-    glm::dvec3 max{-std::numeric_limits<double>::infinity()};
-    bool empty() const { return min.x > max.x || min.y > max.y || min.z > max.z; }
-    void include(const glm::dvec3& point);
+    glm::dvec3 min{std::numeric_limits<double>::infinity()};  ///< metres
+    glm::dvec3 max{-std::numeric_limits<double>::infinity()};  ///< metres
+    bool empty() const { return min.x > max.x || min.y > max.y || min.z > max.z; }  ///< nothing included
+    void include(const glm::dvec3& point);  ///< Grows to hold the point.
 };
 
 /// Box of all visible instances.
@@ -152,15 +152,15 @@ Result<ProbeGrid> fitProbeGrid(const ProbeGridRequest& request, const WorldBound
 /// A visible model with its asset.
 struct PlacedAsset {
     std::shared_ptr<const OctreeAsset> asset;  ///< shared by all models of one file
-    Affine worldFromAsset = identityAffine();
-    std::size_t model = 0;  ///< index into Scene::models
+    Affine worldFromAsset = identityAffine();  ///< to world space, metres
+    std::size_t model = 0;                     ///< index into Scene::models
 };
-
+/// A scene with the models that it names.
 struct LoadedScene {
-    Scene scene;
+    Scene scene;                     ///< as it was read
     std::vector<PlacedAsset> parts;  ///< in the order of Scene::models; invisible ones are not loaded
-    WorldBounds bounds;
-    ProbeGrid probes;
+    WorldBounds bounds;              ///< of all parts
+    ProbeGrid probes;                ///< as asked for, or fitted
 };
 
 /// Reads a scene (.toml) and every PF_VOX file that its visible models name, each file once. Any other file
