@@ -29,6 +29,7 @@ function(_pfvox_check_call function target)
     list(JOIN ARG_UNPARSED_ARGUMENTS " " words)
     message(FATAL_ERROR "${function}(${target}): unknown argument: ${words}")
   endif()
+  list(REMOVE_ITEM ARG_KEYWORDS_MISSING_VALUES OPTIONS DEPENDS ASSETS) # a list may be an empty variable
   if(ARG_KEYWORDS_MISSING_VALUES)
     list(JOIN ARG_KEYWORDS_MISSING_VALUES ", " words)
     message(FATAL_ERROR "${function}(${target}): nothing follows ${words}")
