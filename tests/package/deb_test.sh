@@ -9,7 +9,7 @@ cpack --config "$PFVOX_BUILD_DIR/CPackConfig.cmake" -G DEB -B "$work" -D CPACK_D
   { cat "$work/cpack.log"; fail "cpack"; }
 
 packages=(pfvox-tools libpfvox-dev)
-[ "$PFVOX_GPU" = ON ] && packages+=(pfvox-viewer)
+if [ "$PFVOX_GPU" = ON ]; then packages+=(pfvox-viewer); fi
 for package in "${packages[@]}"; do
   file=$(echo "$work/${package}_${PFVOX_VERSION}"_*.deb)
   expect_file "$file"
@@ -27,7 +27,11 @@ expect_text "$work/pfvox-tools.info" "libc6 (>= "
 expect_text "$work/pfvox-tools.info" "libzstd1"
 expect_text "$work/pfvox-tools.info" "libopenvdb"
 expect_text "$work/libpfvox-dev.info" "pfvox-tools (= $PFVOX_VERSION)"
-[ "$PFVOX_GPU" = ON ] && expect_text "$work/pfvox-viewer.info" "libvulkan1"
+if [ "$PFVOX_GPU" = ON ]; then
+  expect_text "$work/pfvox-viewer.info" "libvulkan1"
+  expect_text "$work/pfvox-tools.info" "libvulkan1" # opened by name, too
+fi
+expect_text "$work/pfvox-tools.info" " Description: converter of voxel assets"
 expect_no_text "$work/libpfvox-dev.contents" "/usr/bin/"
 expect_no_text "$work/pfvox-tools.contents" ".hpp"
 

@@ -108,6 +108,6 @@ expect_file "$work/build/pfvox_vdb.so"
 good "set(PFVOX_BUILD_GPU OFF)
 add_subdirectory(\"$PFVOX_SOURCE_DIR\" pfvox EXCLUDE_FROM_ALL)
 pfvox_add_assets(a ALL $assets OUTPUT_DIR out)"
-ninja -C "$work/build" -n >"$log"
-expect_text "$log" "Converting lamp.vox"
-expect_text "$log" "vox2pf" # which is made first
+ninja -C "$work/build" -t commands a >"$log"
+expect_text "$log" '/pfvox/bin/vox2pf" convert '
+expect_text "$log" "vox2pf.dir/main.cpp.o" # which is made first

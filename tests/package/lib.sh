@@ -15,8 +15,8 @@ expect_file() { [ -s "$1" ] || fail "there is no $1"; }
 expect_no_file() { [ ! -e "$1" ] || fail "$1 should not be there"; }
 expect_same() { cmp -s "$1" "$2" || fail "$1 and $2 differ"; }
 expect_differ() { ! cmp -s "$1" "$2" || fail "$1 and $2 are the same"; }
-expect_text() { grep -qF -- "$2" "$1" || { cat "$1" >&2; fail "'$2' is not in $1"; }; }
-expect_no_text() { ! grep -qF -- "$2" "$1" || { cat "$1" >&2; fail "'$2' is in $1"; }; }
+expect_text() { grep -qF -- "$2" "$1" || { tail -n 40 "$1" | cut -c -300 >&2; fail "'$2' is not in $1"; }; }
+expect_no_text() { ! grep -qF -- "$2" "$1" || { tail -n 40 "$1" | cut -c -300 >&2; fail "'$2' is in $1"; }; }
 
 # Configures a project that sees nothing but an installed pfvox.
 configure() { # <source> <build> <prefix> <generator> [further options]
