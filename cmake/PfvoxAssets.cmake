@@ -87,26 +87,24 @@ function(_pfvox_output_of result source base_dir output_dir)
   set(${result} "${output_dir}/${relative}" PARENT_SCOPE)
 endfunction()
 
-# A file of our own for `output`, and one with the options beside it: make runs a command again when that one changes.
-function(_pfvox_build_files depfile_result options_result output)
+function(_pfvox_depfile result output)
   string(SHA256 name "${output}")
   string(SUBSTRING ${name} 0 16 name)
-  set(name "${CMAKE_CURRENT_BINARY_DIR}/CMakeFiles/pfvox/${name}")
-  file(CONFIGURE OUTPUT "${name}.options" CONTENT "${output}\n${ARGN}\n" @ONLY) # written only where it differs
-  set(${depfile_result} "${name}.d" PARENT_SCOPE)
-  set(${options_result} "${name}.options" PARENT_SCOPE)
+  set(folder "${CMAKE_CURRENT_BINARY_DIR}/CMakeFiles/pfvox")
+  file(MAKE_DIRECTORY "${folder}")
+  set(${result} "${folder}/${name}.d" PARENT_SCOPE)
 endfunction()
 
 # The custom command for one source. Reads base_dir, output_dir, options, settings and inputs of the caller.
 function(_pfvox_convert source output)
   cmake_path(RELATIVE_PATH source BASE_DIRECTORY "${base_dir}" OUTPUT_VARIABLE relative)
-  _pfvox_build_files(depfile options_file "${output}" ${settings} ${options})
+  _pfvox_depfile(depfile "${output}")
   _pfvox_time_stamp_option(time_stamps)
   # One thread: the build system runs as many of these commands as there are processors.
   add_custom_command(OUTPUT "${output}"
     COMMAND pfvox::vox2pf convert -j 1 ${time_stamps} --base-dir "${base_dir}" ${settings} --depfile "${depfile}"
             ${options} "${source}" -o "${output_dir}/"
-    DEPENDS pfvox::vox2pf "${source}" "${options_file}" ${inputs}
+    DEPENDS pfvox::vox2pf "${source}" ${inputs}
     DEPFILE "${depfile}"
     COMMENT "Converting ${relative}"
     VERBATIM COMMAND_EXPAND_LISTS)
@@ -259,14 +257,14 @@ function(pfvox_add_probe_bake target)
   _pfvox_absolute(scene "${CMAKE_CURRENT_SOURCE_DIR}")
   _pfvox_scene_of_assets()
 
-  _pfvox_build_files(depfile options_file "${output}" ${ARG_OPTIONS})
+  _pfvox_depfile(depfile "${output}")
   cmake_path(GET output FILENAME name)
   _pfvox_time_stamp_option(time_stamps)
   _pfvox_gpu_pool()
   # The models are not named here: the asset targets come before the first bake, whose depfile names those that count.
   add_custom_command(OUTPUT "${output}"
     COMMAND pfvox::probe-bake bake ${time_stamps} --depfile "${depfile}" ${ARG_OPTIONS} "${scene}" -o "${output}"
-    DEPENDS pfvox::probe-bake "${scene}" "${options_file}" ${ARG_DEPENDS}
+    DEPENDS pfvox::probe-bake "${scene}" ${ARG_DEPENDS}
     DEPFILE "${depfile}"
     JOB_POOL pfvox_gpu
     COMMENT "Baking ${name}"

@@ -37,7 +37,7 @@ END
 # Builds, and keeps what was said. Time stamps of make are compared to the file system's resolution, so a moment passes.
 build() {
   sleep 0.05
-  cmake --build "$work/build" >"$log" 2>&1
+  cmake --build "$work/build" -j 4 >"$log" 2>&1
 }
 expect_build() { build || { cat "$log" >&2; fail "$1: the build failed"; }; }
 # What a build did: the comments of its commands, in any order.
