@@ -81,6 +81,17 @@ pfvox_add_probe_bake(b SCENE s.toml)" 'pfvox_add_probe_bake(b): OUTPUT is missin
 pfvox_add_probe_bake(b SCENE s.toml OUTPUT s.bin)" 'OUTPUT s.bin does not end in .pf_probe'
   bad "$find
 pfvox_add_probe_bake(b SCENE s.toml OUTPUT s.pf_probe ASSETS a)" 'ASSETS a is no target of pfvox_add_assets'
+  # A scene may be among the sources, too; what is baked is what it becomes.
+  printf '[[models]]\npath = "lamp.vox"\n' >"$work/project/assets/level.toml"
+  good "$find
+pfvox_add_assets(a BASE_DIR assets SOURCES lamp.vox level.toml OUTPUT_DIR out)
+pfvox_add_probe_bake(b SCENE assets/level.toml OUTPUT out/level.pf_probe ASSETS a)
+get_target_property(scene b PFVOX_SCENE)
+get_target_property(outputs a PFVOX_OUTPUTS)
+message(STATUS \"scene \${scene} of \${outputs}\")"
+  expect_text "$log" "scene $work/build/out/level.toml of $work/build/out/lamp.pf_vox;$work/build/out/level.toml"
+  cmake --build "$work/build" --target a >"$log" 2>&1 || { cat "$log" >&2; fail "build"; }
+  expect_text "$work/build/out/level.toml" '"lamp.pf_vox"'
   # The pool of bakes does not take away those of the project, however they are given.
   good "set(CMAKE_JOB_POOLS mine=3)
 $find

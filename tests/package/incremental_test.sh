@@ -17,6 +17,7 @@ words="$out/more props/two words.pf_vox"
 mkdir -p "$assets/more props"
 cp "$PFVOX_SOURCE_DIR/tests/package/assets-project/CMakeLists.txt" "$source"
 cp "$PFVOX_SOURCE_DIR/data/lamp.vox" "$assets/plain.vox"
+cp "$PFVOX_SOURCE_DIR/data/lamp.vox" "$assets/original.vox"
 cp "$PFVOX_SOURCE_DIR/data/tree.vox" "$assets/more props/two words.vox"
 printf '[[override]]\nfiles = "more props/**"\nimport.voxelSizeMetres = 0.2\n' >"$assets/pfvox.toml"
 # One model that this build makes, one that it knows from the depfile only.
@@ -66,9 +67,10 @@ both=("Converting plain.vox" "Converting more props/two words.vox")
 
 configure "$source" "$work/build" "$prefix" "$generator" || { cat "$work/build.configure.log"; fail "configure"; }
 
-expect_done "first build" "${both[@]}" "${scene[@]}"
+expect_done "first build" "${both[@]}" "Converting made.vox" "${scene[@]}"
 expect_file "$plain"
 expect_file "$words"
+expect_file "$work/build/made_voxels/made.pf_vox"
 "$prefix/bin/vox2pf" info --json "$words" | grep -qF '"voxelSizeMetres":0.2' || fail "the override did not reach a file in a folder"
 if [ "$PFVOX_GPU" = ON ]; then
   expect_text "$out/level.toml" '"plain.pf_vox"'
@@ -88,6 +90,9 @@ cp "$PFVOX_SOURCE_DIR/data/statue.vox" "$assets/plain.vox"
 expect_done "an edit" "Converting plain.vox" "${scene[@]}"
 expect_differ "$plain" "$work/plain.before"
 expect_done "nothing after an edit"
+
+cp "$PFVOX_SOURCE_DIR/data/tree.vox" "$assets/original.vox"
+expect_done "an edit of what a source is made from" "Converting made.vox"
 
 if [ "$PFVOX_GPU" = ON ]; then
   cp "$out/level.pf_probe" "$work/light.before"
