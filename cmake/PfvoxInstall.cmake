@@ -2,6 +2,7 @@
 # their module, and the CMake package its files, from where they are themselves.
 include(CMakePackageConfigHelpers)
 
+cmake_path(RELATIVE_PATH CMAKE_INSTALL_FULL_LIBDIR BASE_DIRECTORY ${CMAKE_INSTALL_PREFIX} OUTPUT_VARIABLE pfvox_libdir)
 set(pfvox_cmake_dir ${CMAKE_INSTALL_LIBDIR}/cmake/pfvox)
 
 # pfvox_install_targets(<set> COMPONENT <component> TARGETS <target>...)
@@ -36,7 +37,7 @@ if(CMAKE_STRIP)
   foreach(archive IN LISTS pfvox_archives)
     install(CODE "if(CMAKE_INSTALL_DO_STRIP)
       execute_process(COMMAND \"${CMAKE_STRIP}\" --strip-debug
-        \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_LIBDIR}/$<TARGET_FILE_NAME:${archive}>\")
+        \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${pfvox_libdir}/$<TARGET_FILE_NAME:${archive}>\")
     endif()" COMPONENT dev)
   endforeach()
 endif()
@@ -45,7 +46,7 @@ install(DIRECTORY ${pfvox_header_dirs} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} C
   FILES_MATCHING PATTERN "*.hpp")
 
 configure_package_config_file(cmake/pfvoxConfig.cmake.in ${PROJECT_BINARY_DIR}/cmake/pfvoxConfig.cmake
-  INSTALL_DESTINATION ${pfvox_cmake_dir} NO_SET_AND_CHECK_MACRO NO_CHECK_REQUIRED_COMPONENTS_MACRO)
+  INSTALL_DESTINATION ${pfvox_cmake_dir} PATH_VARS CMAKE_INSTALL_BINDIR NO_SET_AND_CHECK_MACRO NO_CHECK_REQUIRED_COMPONENTS_MACRO)
 # Before 1.0 a new minor version may change everything.
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/cmake/pfvoxConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES
@@ -55,7 +56,6 @@ install(FILES
   DESTINATION ${pfvox_cmake_dir} COMPONENT dev)
 
 # pkg-config: the reader library. The folders count from the file itself, so that the tree can be moved.
-cmake_path(RELATIVE_PATH CMAKE_INSTALL_FULL_LIBDIR BASE_DIRECTORY ${CMAKE_INSTALL_PREFIX} OUTPUT_VARIABLE pfvox_libdir)
 cmake_path(RELATIVE_PATH CMAKE_INSTALL_FULL_INCLUDEDIR BASE_DIRECTORY ${CMAKE_INSTALL_PREFIX}
   OUTPUT_VARIABLE pfvox_includedir)
 cmake_path(RELATIVE_PATH CMAKE_INSTALL_PREFIX BASE_DIRECTORY ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig
