@@ -104,16 +104,30 @@ fi
 # A program that imports, and finds OpenVDB support beside itself.
 cat >"$work/project/convert.cpp" <<'END'
 #include <pfvox/convert.hpp>
-#include <pfvox/import.hpp>
-int main() { return pfvox::looksLikeSource("lamp.vox") ? 0 : 1; }
+
+#include <cstdio>
+
+int main(int, char** argv) {
+    pfvox::DiagnosticList diagnostics;
+    const auto report = pfvox::convertFile(argv[1], argv[2], {}, {}, diagnostics);
+    if (!report) std::puts(describe(report.error()).c_str());
+    return report ? 0 : 1;
+}
 END
 good 'find_package(pfvox CONFIG REQUIRED COMPONENTS import tools)
 add_executable(convert convert.cpp)
 target_link_libraries(convert PRIVATE pfvox::import)
 pfvox_copy_vdb_module(convert)'
 cmake --build "$work/build" >"$log" 2>&1 || { cat "$log" >&2; fail "build"; }
-"$work/build/convert"
-expect_file "$work/build/pfvox_vdb.so"
+"$prefix/bin/vox2pf" "$work/lamp.vox" -o "$work/lamp.pf_vox" >/dev/null
+"$prefix/bin/vox2pf" export "$work/lamp.pf_vox" -o "$work/lamp.vdb" >/dev/null
+"$work/build/convert" "$work/lamp.vdb" "$work/back.pf_vox"
+expect_file "$work/back.pf_vox"
+rm "$work/build/pfvox_vdb.so"
+if ! module_is_installed; then
+  if "$work/build/convert" "$work/lamp.vdb" "$work/back.pf_vox" >"$log"; then fail "a .vdb file was read without the module"; fi
+  expect_text "$log" "put it beside the program"
+fi
 
 # As a folder of another project: the same functions and names, nothing installed.
 good "set(PFVOX_BUILD_GPU OFF)

@@ -26,6 +26,9 @@ configure() { # <source> <build> <prefix> <generator> [further options]
     -DCMAKE_CXX_COMPILER="$PFVOX_CXX" -DCMAKE_CXX_FLAGS="$PFVOX_CXX_FLAGS" "$@" >"$build.configure.log" 2>&1
 }
 
+# Whether programs without a module of their own would find one that this machine has installed.
+module_is_installed() { [ -e "$PFVOX_INSTALLED_MODULE" ]; }
+
 # Programs of a prefix read and write a voxel file of each kind: what they load is where they look for it.
 expect_tools_work() { # <prefix> <folder for files>
   local bin=$1/bin out=$2
