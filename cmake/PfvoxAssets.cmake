@@ -160,9 +160,10 @@ function(pfvox_add_assets target)
     endif()
   endforeach()
 
-  _pfvox_add_target(${target} "${ARG_ALL}" "${models};${scenes}" "${ARG_DEPENDS}")
+  set(outputs ${models} ${scenes})
+  _pfvox_add_target(${target} "${ARG_ALL}" "${outputs}" "${ARG_DEPENDS}")
   set_target_properties(${target} PROPERTIES
-    PFVOX_OUTPUTS "${models};${scenes}" PFVOX_SOURCES "${sources}"
+    PFVOX_OUTPUTS "${outputs}" PFVOX_SOURCES "${sources}"
     PFVOX_BASE_DIR "${base_dir}" PFVOX_OUTPUT_DIR "${output_dir}")
 endfunction()
 
@@ -194,33 +195,47 @@ function(_pfvox_add_target target all files depends)
   endforeach()
 endfunction()
 
-# The scene as it is baked: `scene` itself, or what it becomes among the outputs of an asset target. Sets `scene`, and
-# `carried` when this call made the command that carries it over.
-function(_pfvox_scene_of_assets)
+# The scene as it is baked: `scene` of the caller itself, or what it becomes among the outputs of an asset target.
+# Sets `scene`, and `carrier` to the target that carries it over, if that is none of ASSETS.
+function(_pfvox_scene_of_assets target)
   foreach(assets IN LISTS ARG_ASSETS)
     get_target_property(base_dir ${assets} PFVOX_BASE_DIR)
     get_target_property(output_dir ${assets} PFVOX_OUTPUT_DIR)
     get_target_property(sources ${assets} PFVOX_SOURCES)
     get_target_property(inputs ${assets} PFVOX_OUTPUTS)
+    cmake_path(IS_PREFIX base_dir "${scene}" NORMALIZE is_source)
     cmake_path(IS_PREFIX output_dir "${scene}" NORMALIZE is_output)
-    if(is_output)
+    cmake_path(IS_PREFIX output_dir "${base_dir}" NORMALIZE sources_among_outputs)
+    if(is_output AND NOT (is_source AND sources_among_outputs))
       return() # named as what it will be
     endif()
-    cmake_path(IS_PREFIX base_dir "${scene}" NORMALIZE below)
-    if(NOT below)
+    if(NOT is_source)
       continue()
     endif()
     _pfvox_output_of(output "${scene}" "${base_dir}" "${output_dir}")
-    get_property(known GLOBAL PROPERTY PFVOX_CARRIED_SCENES)
-    if(NOT scene IN_LIST sources AND NOT output IN_LIST known)
-      set(options "")
-      set(settings "")
-      _pfvox_convert("${scene}" "${output}")
-      set_property(GLOBAL APPEND PROPERTY PFVOX_CARRIED_SCENES "${output}")
+    if(NOT scene IN_LIST sources)
+      _pfvox_carry("${scene}" "${output}")
     endif()
     set(scene "${output}" PARENT_SCOPE)
+    set(carrier ${carrier} PARENT_SCOPE)
     return()
   endforeach()
+endfunction()
+
+# Carries a scene over for the first bake that asks for it; sets `carrier`, for the others as well. Reads target, assets,
+# base_dir, output_dir and inputs of the caller.
+function(_pfvox_carry scene output)
+  string(SHA256 key "${output}")
+  get_property(carrier GLOBAL PROPERTY PFVOX_CARRIER_${key})
+  if(NOT carrier)
+    set(carrier ${target}_scene)
+    set(options "")
+    set(settings "")
+    _pfvox_convert("${scene}" "${output}")
+    _pfvox_add_target(${carrier} "" "${output}" ${assets})
+    set_property(GLOBAL PROPERTY PFVOX_CARRIER_${key} ${carrier})
+  endif()
+  set(carrier ${carrier} PARENT_SCOPE)
 endfunction()
 
 # Bakes run one after the other: they share the GPU. Only ninja knows pools.
@@ -255,7 +270,8 @@ function(pfvox_add_probe_bake target)
   endif()
   set(scene "${ARG_SCENE}")
   _pfvox_absolute(scene "${CMAKE_CURRENT_SOURCE_DIR}")
-  _pfvox_scene_of_assets()
+  set(carrier "")
+  _pfvox_scene_of_assets(${target})
 
   _pfvox_depfile(depfile "${output}")
   cmake_path(GET output FILENAME name)
@@ -270,10 +286,10 @@ function(pfvox_add_probe_bake target)
     COMMENT "Baking ${name}"
     VERBATIM COMMAND_EXPAND_LISTS)
   _pfvox_add_target(${target} "${ARG_ALL}" "${output}" "${ARG_DEPENDS}")
-  if(ARG_ASSETS)
-    # Without it, make would run the converter in both targets at once.
-    add_dependencies(${target} ${ARG_ASSETS})
-  endif()
+  # Without it, make would run the converter in several targets at once.
+  foreach(needed IN LISTS ARG_ASSETS carrier)
+    add_dependencies(${target} ${needed})
+  endforeach()
   set_target_properties(${target} PROPERTIES PFVOX_OUTPUTS "${output}" PFVOX_SCENE "${scene}")
 endfunction()
 

@@ -80,6 +80,12 @@ fi
 expect_done "nothing"
 [ "$generator" != Ninja ] || expect_text "$log" "no work to do"
 
+if [ "$PFVOX_GPU" = ON ]; then
+  cmake --build "$work/build" -j 4 --target other_light >"$log" 2>&1 || { cat "$log" >&2; fail "the target other_light"; }
+  expect_text "$log" "Baking other.pf_probe"
+  expect_no_text "$log" "Converting"
+fi
+
 cp "$plain" "$work/plain.before"
 touch "$assets/plain.vox"
 expect_done "a touch" "Converting plain.vox" "${light_again[@]}"
