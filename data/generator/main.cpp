@@ -1,11 +1,13 @@
-// pfvox-make-demo-data: writes the demo sources of data/. The outputs are committed; a test runs this program
-// and compares.
+// pfvox-make-demo-data: writes the demo sources of data/, or those of examples/game-assets. The outputs are committed; a
+// test runs this program and compares.
 
 #include <cstdio>
 #include <exception>
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
+#include <string_view>
+#include <utility>
 
 #include "courtyard.hpp"
 #include "models.hpp"
@@ -24,6 +26,22 @@ void writeFile(const std::filesystem::path& file, const VoxScene& scene, const P
     std::printf("%s: %zu models, %zu bytes\n", file.string().c_str(), scene.models.size(), bytes.size());
 }
 
+VoxScene only(Canvas model) {
+    VoxScene scene;
+    scene.models.push_back(std::move(model));
+    return scene;
+}
+
+void writeExample(const std::filesystem::path& folder) {
+    std::filesystem::create_directories(folder / "props");
+    const DemoPalette p;
+    writeFile(folder / "terrace.vox", only(makeTerrace(p)), p.palette);
+    writeFile(folder / "props/lamp.vox", only(makeLamp(p)), p.palette);
+    writeFile(folder / "props/bench.vox", only(makeBench(p)), p.palette);
+    writeFile(folder / "props/planter.vox", only(makePlanter(p)), p.palette);
+    writeFile(folder / "props/metal ball.vox", only(makeMetalBall(p)), p.palette);
+}
+
 void writeAll(const std::filesystem::path& folder) {
     std::filesystem::create_directories(folder / "verify");
     const DemoPalette p;
@@ -38,12 +56,13 @@ void writeAll(const std::filesystem::path& folder) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    if (argc != 2) {
-        std::fputs("usage: pfvox-make-demo-data <folder>\n", stderr);
+    const bool example = argc == 3 && std::string_view(argv[1]) == "--example";
+    if (argc != 2 && !example) {
+        std::fputs("usage: pfvox-make-demo-data [--example] <folder>\n", stderr);
         return 2;
     }
     try {
-        writeAll(argv[1]);
+        example ? writeExample(argv[2]) : writeAll(argv[1]);
     } catch (const std::exception& exception) {
         std::fprintf(stderr, "error: %s\n", exception.what());
         return 3;

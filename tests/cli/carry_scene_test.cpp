@@ -94,6 +94,16 @@ TEST_F(Vox2pfScene, PathsToNothingAndToSourcesOutsideAreWarnedAbout) {
     EXPECT_FALSE(exists("strict/scene.toml"));
 }
 
+TEST_F(Vox2pfScene, ASceneAloneFindsWhatAnEarlierRunConverted) {
+    addSource("in/props/lamp.vox");
+    addScene("in/levels/one.toml", modelAt("../props/lamp.vox"));
+    ASSERT_EQ(run({"--base-dir", "in", "in/props/lamp.vox", "-o", "out"}).exitCode, 0);
+    const ProcessResult result = run({"--base-dir", "in", "in/levels/one.toml", "-o", "out"});
+    EXPECT_EQ(result.exitCode, 0);
+    EXPECT_THAT(result.err, Not(HasSubstr("scene-")));
+    EXPECT_EQ(readText(folder / "out/levels/one.toml"), modelAt("../props/lamp.pf_vox"));
+}
+
 TEST_F(Vox2pfScene, ABrokenSceneIsAFailedAssetWithItsPlace) {
     addSource("in/lamp.vox");
     addScene("in/scene.toml", modelAt("lamp.vox") + "scaleVec = [0, 1, 1]\n");

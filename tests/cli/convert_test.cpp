@@ -25,6 +25,25 @@ TEST_F(Vox2pf, convertsOneFileWithAndWithoutTheCommand) {
     EXPECT_THAT(filesBelow("out"), ElementsAre("lamp.pf_vox")) << "no temporary file stays behind";
 }
 
+TEST_F(Vox2pf, baseDirGivesNamedFilesTheirPlaceOfTheFolder) {
+    addSource("in/props/lamp.vox");
+    addSource("in/tree.vox", "tree.vox");
+    addSource("outside.vox");
+    writeText(folder / "settings.toml",
+              "[[override]]\nfiles = \"props/**\"\nimport.voxelSizeMetres = 0.5\n");
+    const std::string base = (folder / "in").string();
+    ASSERT_EQ(run({"in", "-o", "whole", "--settings", "settings.toml"}).exitCode, 0);
+    for (const char* file : {"in/props/lamp.vox", "in/tree.vox"}) {
+        const auto result = run({file, "--base-dir", base, "-o", "out", "--settings", "settings.toml"});
+        EXPECT_EQ(result.exitCode, 0) << result.err;
+    }
+    EXPECT_EQ(readTree(folder / "out"), readTree(folder / "whole"));
+
+    const ProcessResult refused = run({"outside.vox", "--base-dir", "in", "-o", "out"});
+    EXPECT_EQ(refused.exitCode, 2);
+    EXPECT_THAT(refused.err, HasSubstr("outside.vox is not below --base-dir in"));
+}
+
 TEST_F(Vox2pf, quietSaysNothingWhenAllIsWell) {
     addSource("lamp.vox");
     const ProcessResult result = run({"-q", "lamp.vox", "-o", "lamp.pf_vox"});

@@ -98,4 +98,16 @@ TEST(DemoData, generatorReproducesTheCommittedBytes) {
     }
 }
 
+TEST(DemoData, generatorReproducesTheAssetsOfTheExample) {
+    const TempFolder folder;
+    ASSERT_EQ(runProcess({PFVOX_MAKE_DEMO_DATA, "--example", folder.path().string()}).exitCode, 0);
+    const auto made = readTree(folder.path());
+    EXPECT_EQ(made.size(), 5u);
+    const auto assets = std::filesystem::path(PFVOX_DATA_DIR).parent_path() / "examples/game-assets/assets";
+    for (const auto& [name, bytes] : made) {
+        EXPECT_TRUE(bytes == readText(assets / name))
+            << name << " differs: run pfvox-make-demo-data --example " << assets << " and commit";
+    }
+}
+
 }  // namespace pfvox::test

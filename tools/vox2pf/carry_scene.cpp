@@ -68,9 +68,11 @@ class PathTurner {
             return path.is_absolute() ? std::nullopt : std::optional(fromNewPlace(named));
         }
         const fs::path expected = fs::path(path).replace_extension(kPfVoxExtension);
+        const fs::path output = (to_ / expected).lexically_normal();
+        if (fs::exists(output, error)) return expected.generic_string();  // an earlier run converted it
         diagnostics_.warn("scene-model-not-converted",
                           fmt::format("{}: {} is no input of this run; the scene will look for {}", use.place,
-                                      use.model.path, (to_ / expected).lexically_normal().string()));
+                                      use.model.path, output.string()));
         return expected.generic_string();
     }
 

@@ -36,6 +36,11 @@ void addInputOutputOptions(CLI::App& command, ConvertOptions& options) {
         ->required()
         ->check(suggestFiles({kPfVoxExtension}))
         ->group(group::kInputOutput);
+    command
+        .add_option("--base-dir", options.baseDir,
+                    "files named on the command line are mirrored from this folder, as if it were the input")
+        ->option_text("FOLDER")
+        ->group(group::kInputOutput);
     auto* force = command.add_flag("--force", options.force, "convert what is up to date, too")
                       ->group(group::kInputOutput);
     command.add_flag("--no-clobber", options.noClobber, "never replace an existing output")
@@ -147,6 +152,23 @@ InputQuery inputQuery(const ConvertOptions& options) {
     return query;
 }
 
+/// --base-dir: files that were named one by one keep their place below that folder. Gives what is wrong, if anything.
+std::string placeBelow(const std::filesystem::path& baseDir, std::vector<InputFile>& inputs) {
+    // Links are not followed: an asset that is a link has the place of the link.
+    const auto named = [](const std::filesystem::path& path) {
+        const auto name = std::filesystem::absolute(path).lexically_normal();
+        return name.has_filename() ? name : name.parent_path();
+    };
+    for (InputFile& input : inputs) {
+        if (input.fromFolder) continue;
+        const auto relative = named(input.file).lexically_relative(named(baseDir));
+        if (relative.empty() || relative == "." || *relative.begin() == "..")
+            return input.file.string() + " is not below --base-dir " + baseDir.string();
+        input.relative = relative;
+    }
+    return {};
+}
+
 /// Scenes are carried over under their own name. In folders the name tells them from settings files; what is
 /// named on the command line is a scene by its extension.
 bool isScene(const InputFile& input) {
@@ -183,6 +205,10 @@ ExitCode runConvert(const CLI::App& command, const ConvertOptions& options) {
     if (!settings) return stopWith(settings.error());
     auto inputs = collectInputs(options.inputs, inputQuery(options));
     if (!inputs) return stopWith(inputs.error());
+    if (!options.baseDir.empty()) {
+        if (const std::string complaint = placeBelow(options.baseDir, *inputs); !complaint.empty())
+            return usageError(command, complaint);
+    }
     const auto pairs = pairOutputs(*std::move(inputs), options.output, kPfVoxExtension, isScene);
     if (!pairs) return usageError(command, pairs.error());
     if (pairs->empty())

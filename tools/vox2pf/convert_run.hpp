@@ -18,6 +18,7 @@ struct ConvertOptions {
     CommonOptions common;
     std::vector<std::string> inputs;
     std::string output;
+    std::string baseDir;
     std::string settingsFile;
     std::string depfile;
     SettingsPatch patch;
