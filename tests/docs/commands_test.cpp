@@ -26,7 +26,7 @@ struct DocCommand {
 /// builds them.
 bool looksLikeCommand(const std::string& line) {
     static const std::regex kStart(
-        R"(^([A-Z_]+=\S* )*(\./)?(vox2pf|probe-bake|pfview|cmake|ctest|ninja|make|git|cd|sudo|apt-get|apt|export|source|sbatch|scontrol|man|mkdir|(scripts|bench|examples|build)/\S+)(\s.*)?$)");
+        R"(^([A-Z_]+=\S* )*(\./)?(vox2pf|probe-bake|pfview|cmake|ctest|ninja|make|git|cd|sudo|apt-get|apt|export|sbatch|scontrol|man|mkdir|(scripts|bench|examples|build)/\S+)(\s.*)?$)");
     return std::regex_match(line, kStart);
 }
 
