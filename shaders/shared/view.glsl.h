@@ -15,6 +15,14 @@ PFVOX_CONSTANT(uint, kViewMaterial, 3u);
 PFVOX_CONSTANT(uint, kViewDepth, 4u);
 PFVOX_CONSTANT(uint, kViewSteps, 5u);
 PFVOX_CONSTANT(uint, kViewLod, 6u);
+PFVOX_CONSTANT(uint, kViewIndirect, 7u);
+PFVOX_CONSTANT(uint, kViewTiers, 8u);
+PFVOX_CONSTANT(uint, kViewField, 9u);
+PFVOX_CONSTANT(uint, kViewFieldDifference, 10u);
+PFVOX_CONSTANT(uint, kViewAtlasLight, 11u);
+PFVOX_CONSTANT(uint, kViewAtlasNormals, 12u);
+PFVOX_CONSTANT(uint, kViewAtlasDepth, 13u);
+PFVOX_CONSTANT(uint, kViewModeCount, 14u);
 
 PFVOX_STRUCT(ViewParameters) {
     vec3 cameraPosition;  // metres

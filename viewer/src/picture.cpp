@@ -1,6 +1,5 @@
 #include "picture.hpp"
 
-#include <array>
 #include <cmath>
 #include <pfvox_shaders/shaders.hpp>
 #include <utility>
@@ -8,32 +7,6 @@
 #include "view_parameters.hpp"
 
 namespace pfvox::viewer {
-
-namespace {
-
-struct NamedMode {
-    std::string_view name;
-    ViewMode mode;
-    std::uint32_t shaderMode;
-};
-constexpr std::array kModes{
-    NamedMode{"final", ViewMode::Final, shared::kViewFinal},
-    NamedMode{"albedo", ViewMode::Albedo, shared::kViewAlbedo},
-    NamedMode{"normals", ViewMode::Normals, shared::kViewNormals},
-    NamedMode{"material", ViewMode::Material, shared::kViewMaterial},
-    NamedMode{"depth", ViewMode::Depth, shared::kViewDepth},
-    NamedMode{"steps", ViewMode::Steps, shared::kViewSteps},
-    NamedMode{"lod", ViewMode::Lod, shared::kViewLod},
-};
-
-const NamedMode& entryOf(ViewMode mode) {
-    for (const NamedMode& entry : kModes) {
-        if (entry.mode == mode) return entry;
-    }
-    return kModes[0];
-}
-
-}  // namespace
 
 shared::ViewParameters viewParametersOf(const ViewCamera& camera, const PictureSettings& settings) {
     constexpr float kStepsAtHotEnd = 96.0f;
@@ -48,7 +21,7 @@ shared::ViewParameters viewParametersOf(const ViewCamera& camera, const PictureS
             .cameraRight = glm::vec3(frame.right * tanX),
             .samplesPerPixel = settings.samplesPerPixel,
             .cameraUp = glm::vec3(frame.up * tanY),
-            .mode = entryOf(settings.mode).shaderMode,
+            .mode = static_cast<std::uint32_t>(settings.mode),
             .sunDirection = glm::normalize(light.sunDirection),
             .exposure = light.exposure,
             .sunIrradiance = light.sunIrradiance,
@@ -91,17 +64,6 @@ Lighting lightingOf(const Scene& scene) {
             .skyZenith = glm::vec3(scene.sky.zenith),
             .skyHorizon = glm::vec3(scene.sky.horizon),
             .skyGround = glm::vec3(scene.sky.ground)};
-}
-
-std::optional<ViewMode> viewModeFrom(std::string_view name) {
-    for (const NamedMode& entry : kModes) {
-        if (entry.name == name) return entry.mode;
-    }
-    return std::nullopt;
-}
-
-std::string_view toString(ViewMode mode) {
-    return entryOf(mode).name;
 }
 
 Result<PictureRenderer> PictureRenderer::create(gpu::Device& device) {

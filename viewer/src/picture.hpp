@@ -5,14 +5,14 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
-#include <optional>
 #include <pfvox/gpu.hpp>
 #include <pfvox/gpu_scene.hpp>
 #include <pfvox/scene.hpp>
-#include <string_view>
 #include <vector>
 
 #include "camera.hpp"
+#include "shown_probes.hpp"
+#include "view_modes.hpp"
 
 namespace pfvox::viewer {
 
@@ -23,19 +23,12 @@ struct Picture {
     std::vector<std::uint32_t> pixels;  ///< bytes R, G, B, A in memory
 };
 
-/// What the colours show. The spellings are "final", "albedo", "normals", "material", "depth", "steps" and "lod".
-enum class ViewMode : std::uint8_t {
-    Final,     ///< sun with shadow, sky, emission
-    Albedo,    ///< base colour
-    Normals,   ///< world normal, [-1, 1] to [0, 1]
-    Material,  ///< a colour for each material index
-    Depth,     ///< edge of the leaf in the octree: hot = one voxel, cold = 64 and more
-    Steps,     ///< iterations of the traversal: cold = few
-    Lod,       ///< edge of the cell that was hit: hot = one voxel; dark where it is no level of detail
+/// Which maps the atlas views show.
+struct AtlasChoice {
+    std::int32_t probe = -1;  ///< this one alone, by index in the grid; < 0 = all, in pages
+    std::uint32_t page = 0;   ///< of as many probes as fit; beyond the last page: the last
+    bool operator==(const AtlasChoice&) const = default;
 };
-inline constexpr std::size_t kViewModes = 7;
-std::optional<ViewMode> viewModeFrom(std::string_view name);
-std::string_view toString(ViewMode mode);
 
 /// Light of the viewer: linear RGB.
 struct Lighting {
@@ -56,6 +49,8 @@ struct PictureSettings {
     ViewMode mode = ViewMode::Final;
     /// Levels of detail that are narrower than this many pixels stand for what is in them; 0 = not used.
     float lodPixels = 1.0f;
+    ToneMap toneMap = ToneMap::Standard;
+    AtlasChoice atlas;
     Lighting lighting;
     bool operator==(const PictureSettings&) const = default;
 };
