@@ -22,6 +22,8 @@ constexpr const char* kFooter = R"(Examples:
   pfview scene.toml --screenshot court.png --camera court --frames 16
   pfview scene.toml --screenshot flight.png --camera-path flight.json --frames 120
   pfview hall.pf_vox --screenshot hall.png --camera 4,3,8,0,1,0,50 --stats-json -
+  pfview scene.toml --probes scene.pf_probe --view tiers --screenshot tiers.png
+  pfview scene.toml --size 1920x1080 --frames 1000 --stats-json -
 
 Exit codes: 0 ok, 2 usage, 3 cannot read or write, 4 invalid input, 5 unsupported feature or version, 6 GPU unavailable or
 lost, 70 internal error)";
@@ -74,11 +76,45 @@ struct RawOptions {
     std::string size;
     std::string camera;
     std::string view;
+    std::string toneMap;
+    double exposureStops = 0.0;
+    CLI::Option* exposure = nullptr;
+    CLI::Option* samples = nullptr;
 };
 
+/// "a, b or c".
+template <class Entries>
+std::string namesOf(const Entries& entries) {
+    std::string names;
+    for (std::size_t i = 0; i < entries.size(); ++i)
+        names += (i == 0 ? "" : i + 1 == entries.size() ? " or " : ", ") + std::string(entries[i].name);
+    return names;
+}
+
+void declareLight(CLI::App& app, Options& options, RawOptions& raw) {
+    CLI::Option_group* const light = app.add_option_group("Light");
+    CLI::Option* const probes =
+        light
+            ->add_option("--probes", options.probes.file,
+                         "Indirect light from this .pf_probe file; default: the one beside the scene, by its name")
+            ->type_name("FILE");
+    light->add_flag("--no-probes", options.probes.none, "Guess indirect light from the sky even if there are probes")
+        ->excludes(probes);
+    raw.exposure = light->add_option("--exposure", raw.exposureStops, "Stops brighter, -16 to 16; default 0")
+                       ->check(CLI::Range(-16.0, 16.0))
+                       ->type_name("STOPS");
+    light->add_option("--tonemap", raw.toneMap, namesOf(toneMaps()) + "; default standard")->type_name("NAME");
+    light->add_option("--probe", options.picture.atlas.probe, "Views of the atlas: this probe alone, by its index")
+        ->check(CLI::Range(0, 1 << 30))
+        ->type_name("N");
+    light->add_option("--probe-page", options.picture.atlas.page, "Views of the atlas: this page of probes, from 0")
+        ->check(CLI::Range(0u, 1u << 30))
+        ->type_name("N");
+}
+
 void declare(CLI::App& app, Options& options, RawOptions& raw) {
-    app.set_version_flag("--version", fmt::format("pfview {}\nreads PF_VOX 1.x", PFVOX_VERSION));
-    app.add_option("file", options.file, "The .pf_vox file, scene (.toml) or folder to look at")->type_name("FILE");
+    app.set_version_flag("--version", fmt::format("pfview {}\nreads PF_VOX 1.x, PF_PROBE 1.x", PFVOX_VERSION));
+    app.add_option("file", options.file, "The .pf_vox file, scene (.toml), .pf_probe file beside its scene, or folder to look at")->type_name("FILE");
     app.footer(kFooter);
 
     CLI::Option_group* const picture = app.add_option_group("Picture");
@@ -91,18 +127,18 @@ void declare(CLI::App& app, Options& options, RawOptions& raw) {
             "Name of a camera, or px,py,pz,tx,ty,tz[,fovY] in metres and degrees; default: the scene's "
             "first camera, else frames everything")
         ->type_name("CAMERA");
-    picture->add_option("--view", raw.view, "final, albedo, normals, material, depth, steps or lod; default final")
+    picture->add_option("--view", raw.view, namesOf(viewModes()) + "; default final")
         ->type_name("MODE");
-    picture
+    raw.samples = picture
         ->add_option("--samples", options.picture.samplesPerPixel,
-                     "Camera rays for each pixel, 1 to 256; default 4")
+                     "Camera rays for each pixel and frame, 1 to 256; default 4, without --screenshot 1")
         ->check(CLI::Range(1u, 256u))
         ->type_name("N");
 
     picture
         ->add_option("--frames", options.frames,
                      "Frames of which the picture is the mean, as in the window; with --camera-path: numbered "
-                     "pictures. 1 to 100000, default 1")
+                     "pictures; without --screenshot: frames that are measured. 1 to 100000, default 1")
         ->check(CLI::Range(1u, 100000u))
         ->type_name("N");
     picture
@@ -115,6 +151,8 @@ void declare(CLI::App& app, Options& options, RawOptions& raw) {
         ->check(CLI::Range(0.0, 64.0))
         ->type_name("N");
 
+    declareLight(app, options, raw);
+
     CLI::Option_group* const device = app.add_option_group("Device");
     device
         ->add_option("--device", options.device,
@@ -125,7 +163,7 @@ void declare(CLI::App& app, Options& options, RawOptions& raw) {
                      "Run with the Vulkan validation layer; its messages are failures");
 
     CLI::Option_group* const output = app.add_option_group("Output");
-    output->add_option("--stats-json", options.statisticsFile, "Write statistics as JSON; - is stdout")
+    output->add_option("--stats-json", options.statisticsFile, "Write statistics as JSON; - is stdout. Without --screenshot no picture is made: for measuring")
         ->type_name("FILE");
     output->add_flag("-q,--quiet", options.quiet, "No messages but errors");
 }
@@ -143,12 +181,19 @@ void understand(const RawOptions& raw, Options& options) {
         if (!mode) throw CLI::ValidationError("--view", fmt::format("there is no view '{}'", raw.view));
         options.picture.mode = *mode;
     }
+    if (raw.exposure->count() != 0) options.exposureStops = raw.exposureStops;
+    if (!raw.toneMap.empty()) {
+        options.toneMap = toneMapFrom(raw.toneMap);
+        if (!options.toneMap) throw CLI::ValidationError("--tonemap", fmt::format("there is no tone map '{}'", raw.toneMap));
+    }
+    options.picture.toneMap = options.toneMap.value_or(ToneMap::Standard);
+    if (options.screenshot.empty() && raw.samples->count() == 0) options.picture.samplesPerPixel = 1;
     if (options.listDevices) return;
     if (options.screenshot.empty()) {
-        if (!options.statisticsFile.empty()) throw CLI::ValidationError("--stats-json", "needs --screenshot");
         if (!options.cameraPath.empty()) throw CLI::ValidationError("--camera-path", "needs --screenshot");
-        if (options.frames != 1) throw CLI::ValidationError("--frames", "needs --screenshot");
-        return;
+        if (options.frames != 1 && !options.isHeadless())
+            throw CLI::ValidationError("--frames", "needs --screenshot or --stats-json");
+        if (!options.isHeadless()) return;
     }
     if (options.file.empty()) throw CLI::ValidationError("file", "a .pf_vox file or a scene is needed");
 }

@@ -258,6 +258,8 @@ PictureSettings Session::pictureSettings(glm::uvec2 windowPixels) const {
                             .samplesPerPixel = 1,
                             .mode = mode,
                             .lodPixels = static_cast<float>(settings.lodPixels),
+                            .toneMap = settings.toneMap,
+                            .atlas = atlas,
                             .lighting = lighting};
     picture.lighting.exposure = static_cast<float>(std::exp2(settings.exposureStops));
     return picture;
@@ -275,7 +277,7 @@ Result<void> Session::draw(glm::uvec2 windowPixels) {
     const PictureSettings picture = pictureSettings(windowPixels);
     if (!settings.antiAliasing) frames_.restart();
     PFVOX_TRY(const PictureStatistics, statistics,
-              frames_.draw(*device_, shown_->scene, camera.camera(), picture));
+              frames_.draw(*device_, {shown_->scene, probes()}, camera.camera(), picture));
     statistics_ = statistics;
     drawn_ = {camera.camera(), picture};
     frameTimesMs_.push_back(static_cast<float>(statistics_.gpuMs));
