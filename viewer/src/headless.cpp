@@ -173,6 +173,7 @@ Result<void> runHeadless(const Options& options, Diagnostics& diagnostics) {
     PFVOX_TRY(const std::optional<ShownProbes>, probes,
               findProbes(device, request, loaded, path.file, diagnostics));
     const ShownProbes* const light = probes ? &*probes : nullptr;
+    if (light != nullptr) diagnostics.note("probes", "indirect light from " + light->file.string());
     PFVOX_CHECK(checkView(settings.mode, light, path.file));
     PFVOX_CHECK(checkAtlas(settings, light));
 

@@ -150,11 +150,11 @@ void Session::update(double secondsSinceStart) {
         Loading done = *std::exchange(loading_, std::nullopt);
         Result<LoadedScene> loaded = done.scene.get();
         const std::string name = done.path.file.string();
+        if (loaded) log_->dismissStrip();  // before: what is wrong with the probes is to stay
         const Result<void> shown =
             loaded ? show(std::move(done.path), *std::move(loaded), done.keepCamera)
                    : Result<void>(tl::make_unexpected(loaded.error()));
         if (shown) {
-            log_->dismissStrip();
             log_->add(MessageKind::Note, "shows " + name);
         } else {
             log_->addError(describe(shown.error()));
