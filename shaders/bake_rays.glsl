@@ -6,6 +6,7 @@
 #include "shared/bake.glsl.h"
 #include "octree_trace.glsl"
 #include "material.glsl"
+#include "sky.glsl"
 
 // Scenes without glass take one any-hit ray for a shadow.
 layout(constant_id = 0) const uint kHasGlass = 0u;
@@ -19,9 +20,7 @@ struct RayCounts {
 };
 
 vec3 skyRadiance(BakeScene bake, vec3 direction) {
-    float up = direction.y;
-    if (up >= 0.0) return mix(bake.skyHorizon, bake.skyZenith, sqrt(up));
-    return mix(bake.skyHorizon, bake.skyGround, smoothstep(0.0, 0.9, -up));
+    return skyAlong(SkyColours(bake.skyZenith, bake.skyHorizon, bake.skyGround), direction);
 }
 
 Hit castRay(Scene scene, Ray ray, inout RayCounts counts) {

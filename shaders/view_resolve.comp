@@ -99,6 +99,6 @@ void main() {
     vec4 before = knownBefore(r, pixel, frame.w);
     float frames = floor(before.w + 0.5) + 1.0;
     vec3 colour = mix(before.rgb, frame.rgb, 1.0 / frames);
-    History(push.history).at[index] = vec4(colour, frames);
+    if ((push.history.x | push.history.y) != 0u) History(push.history).at[index] = vec4(colour, frames);
     Pixels(push.pixels).rgba[index] = packUnorm4x8(vec4(srgbFromLinear(colour), 1.0));
 }

@@ -1,65 +1,46 @@
-// The viewer's picture: one invocation a pixel, several camera rays each (shared/view.glsl.h).
+// Views that inspect the scene: what the octree and its materials are, without light.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_buffer_reference_uvec2 : require
 
-#include "view_shading.glsl"
+#include "view_frame.glsl"
+#include "view_colours.glsl"
 
-layout(local_size_x = kViewGroupEdge, local_size_y = kViewGroupEdge) in;
-
-layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer Parameters { ViewParameters view; };
-layout(buffer_reference, std430, buffer_reference_align = 16) writeonly buffer Pixels { uint rgba[]; };
-layout(buffer_reference, std430, buffer_reference_align = 16) buffer Counters { ViewCounters counters; };
-layout(buffer_reference, std430, buffer_reference_align = 16) writeonly buffer Linear { vec4 at[]; };
-layout(push_constant) uniform Push { ViewPushConstants push; };
-
-// Samples spread evenly over the pixel: the additive recurrence with the plastic number (Roberts 2018). The first lies
-// in the middle.
-vec2 samplePosition(uint index) { return fract(vec2(0.5) + float(index) * vec2(0.7548776662, 0.5698402910)); }
-
-Ray cameraRay(ViewParameters view, uvec2 pixel, vec2 within) {
-    vec2 plane = 2.0 * (vec2(pixel) + within) / vec2(view.width, view.height) - 1.0;
-    vec3 direction = view.cameraForward + plane.x * view.cameraRight - plane.y * view.cameraUp;
-    return Ray(view.cameraPosition, kInfinity, normalize(direction), view.cone);
+// Hot = one voxel, cold = 64 and more. Dark where the cell is a leaf of the file and no level of detail.
+vec3 cellColour(Surface surface) {
+    vec3 colour = heatColour(0.8 * (1.0 - float(surface.leafLog2) / 6.0));
+    return surface.lodColor != 0u ? colour : 0.3 * colour;
 }
 
-void count(TraceStatistics statistics, uint hits, uint cappedRays, uint samples) {
-    Counters counters = Counters(push.counters);
-    atomicAdd(counters.counters.primaryHits, hits);
-    if (cappedRays != 0u) atomicAdd(counters.counters.cappedRays, cappedRays);
-    uint before = atomicAdd(counters.counters.stepsLow, statistics.steps);
-    if (before + statistics.steps < before) atomicAdd(counters.counters.stepsHigh, 1u);
-    before = atomicAdd(counters.counters.raysLow, samples);
-    if (before + samples < before) atomicAdd(counters.counters.raysHigh, 1u);
+vec3 surfaceColour(ViewParameters view, Scene scene, Ray ray, Hit hit) {
+    Surface surface = surfaceOf(scene, ray, hit);
+    switch (view.mode) {
+        case kViewAlbedo: return albedoOf(scene, surface);
+        case kViewNormals: return linearFromDisplay(0.5 + 0.5 * surface.normal);
+        case kViewMaterial: return linearFromDisplay(indexColour(surface.material));
+        case kViewDepth: return heatColour(1.0 - float(octreeLeafLog2(scene, hit)) / 7.0);
+        default: return cellColour(surface) * faceShade(surface.normal);
+    }
 }
 
 void main() {
     ViewParameters view = Parameters(push.parameters).view;
-    uvec2 pixel = gl_GlobalInvocationID.xy;
-    if (pixel.x >= view.width || pixel.y >= view.height) return;
-
-    vec3 sum = vec3(0.0);
-    uint hits = 0u;
-    uint cappedRays = 0u;
-    float nearest = kInfinity;
-    TraceStatistics total = TraceStatistics(0u, 0u);
-    for (uint i = 0u; i < view.samplesPerPixel; ++i) {
+    Pixel pixel = pixelOf(view);
+    beginCounting();
+    if (pixel.inside) {
+        Scene scene = Scene(push.scene);
+        Ray ray = cameraRay(view, pixel.at);
         TraceStatistics statistics = TraceStatistics(0u, 0u);
-        float distance;
-        Ray ray = cameraRay(view, pixel, samplePosition(view.firstSample + i));
-        sum += viewColour(view, Scene(push.scene), ray, statistics, distance);
-        hits += uint(distance < kInfinity);
-        nearest = min(nearest, distance);
-        cappedRays += statistics.capped;
-        total.steps += statistics.steps;
+        Hit hit = traceClosest(scene, ray, statistics);
+        bool struck = hit.instance != kNoInstance;
+        count(statistics);
+        count(kCountHits, uint(struck));
+        vec3 colour = view.mode == kViewSteps    ? heatColour(float(statistics.steps) / view.stepScale)
+                      : struck                   ? surfaceColour(view, scene, ray, hit)
+                      : view.mode == kViewAlbedo ? toneMap(view.toneMap, view.exposure * skyRadiance(view, ray.direction))
+                                                 : kBackground;
+        writeColour(view, pixel.index, colour, struck ? hit.t : kInfinity);
     }
-    count(total, hits, cappedRays, view.samplesPerPixel);
-    vec3 mean = sum / float(view.samplesPerPixel);
-    uint index = pixel.y * view.width + pixel.x;
-    if ((push.linear.x | push.linear.y) != 0u) {
-        Linear(push.linear).at[index] = vec4(mean, nearest);
-    } else {
-        Pixels(push.pixels).rgba[index] = packUnorm4x8(vec4(srgbFromLinear(mean), 1.0));
-    }
+    endCounting();
 }

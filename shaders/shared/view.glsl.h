@@ -1,4 +1,8 @@
-// What a picture is made from: read by view_scene.comp and view_resolve.comp, written by the viewer.
+// What a picture is made from: read by the view_*.comp programs, written by the viewer.
+//
+//     light:       geometry -> SeenPixel -> sun -> reflections -> light -> colour, once for each sample of a pixel
+//     inspection:  scene, field or atlas -> colour
+//     then         colours -> resolve -> pixels
 #ifndef PFVOX_SHARED_VIEW_GLSL_H
 #define PFVOX_SHARED_VIEW_GLSL_H
 
@@ -15,6 +19,14 @@ PFVOX_CONSTANT(uint, kViewMaterial, 3u);
 PFVOX_CONSTANT(uint, kViewDepth, 4u);
 PFVOX_CONSTANT(uint, kViewSteps, 5u);
 PFVOX_CONSTANT(uint, kViewLod, 6u);
+PFVOX_CONSTANT(uint, kViewIndirect, 7u);
+PFVOX_CONSTANT(uint, kViewTiers, 8u);
+PFVOX_CONSTANT(uint, kViewField, 9u);
+PFVOX_CONSTANT(uint, kViewFieldDifference, 10u);
+PFVOX_CONSTANT(uint, kViewAtlasLight, 11u);
+PFVOX_CONSTANT(uint, kViewAtlasNormals, 12u);
+PFVOX_CONSTANT(uint, kViewAtlasDepth, 13u);
+PFVOX_CONSTANT(uint, kViewModeCount, 14u);
 
 PFVOX_STRUCT(ViewParameters) {
     vec3 cameraPosition;  // metres
@@ -34,34 +46,76 @@ PFVOX_STRUCT(ViewParameters) {
     vec3 skyHorizon;
     uint firstSample;     // of the sequence of positions within a pixel
     vec3 skyGround;
-    uint reserved2;
-};
-PFVOX_SIZE(ViewParameters, 144);
-PFVOX_OFFSET(ViewParameters, cameraUp, 48);
-PFVOX_OFFSET(ViewParameters, sunIrradiance, 80);
-PFVOX_OFFSET(ViewParameters, skyGround, 128);
-
-PFVOX_STRUCT(ViewCounters) {
-    uint primaryHits;
-    uint cappedRays;
-    uint stepsLow;  // 64-bit sum over all rays of all samples
-    uint stepsHigh;
-    uint raysLow;
-    uint raysHigh;
+    uint toneMap;         // kToneMap...
+    uvec2 field;          // ProbeFieldRecord; 0 = there are no probes
+    uint atlasFirst;      // probe in the upper left
+    uint atlasCount;      // probes shown
+    uint atlasColumns;
+    uint atlasCell;       // edge of one map, pixels, with a gap of one
     uint reserved0;
     uint reserved1;
 };
-PFVOX_SIZE(ViewCounters, 32);
+PFVOX_SIZE(ViewParameters, 176);
+PFVOX_OFFSET(ViewParameters, cameraUp, 48);
+PFVOX_OFFSET(ViewParameters, sunIrradiance, 80);
+PFVOX_OFFSET(ViewParameters, skyGround, 128);
+PFVOX_OFFSET(ViewParameters, field, 144);
+
+PFVOX_CONSTANT(uint, kToneMapStandard, 0u);
+PFVOX_CONSTANT(uint, kToneMapLinear, 1u);
+PFVOX_CONSTANT(uint, kToneMapReinhard, 2u);
+PFVOX_CONSTANT(uint, kToneMapAces, 3u);
+PFVOX_CONSTANT(uint, kToneMapNeutral, 4u);
+
+// What a camera ray sees behind all glass.
+PFVOX_STRUCT(SeenPixel) {
+    float distance;  // metres; 1e30 = sky
+    uint material;
+    uint normal;     // octahedral, two snorm16
+    uint lodColor;   // sRGB of a level of detail; 0 = the material's
+    float voxelMetres;
+    uint sun;        // share of the sun that arrives, R11G11B10F
+    uint through;    // share that glass in front lets through, R11G11B10F
+    uint reserved0;
+};
+PFVOX_SIZE(SeenPixel, 32);
+
+// Of scenes with glass or mirrors only: the first glass in front, and what reflections add.
+PFVOX_STRUCT(SeenShine) {
+    vec3 added;         // radiance at the camera
+    float distance;     // of the glass; 1e30 = none
+    uint material;
+    uint normal;        // as in SeenPixel
+    float voxelMetres;
+    uint reserved0;
+};
+PFVOX_SIZE(SeenShine, 32);
+
+// Sums over all samples of all frames, 64 bits each: low word first.
+PFVOX_CONSTANT(uint, kCountHits, 0u);        // camera rays that met a voxel
+PFVOX_CONSTANT(uint, kCountSteps, 1u);
+PFVOX_CONSTANT(uint, kCountCapped, 2u);
+PFVOX_CONSTANT(uint, kCountSunRays, 3u);
+PFVOX_CONSTANT(uint, kCountReflectionRays, 4u);
+PFVOX_CONSTANT(uint, kCountWithoutValue, 5u);  // lookups without a tier, or not finite
+PFVOX_CONSTANT(uint, kCountTiers, 6u);         // five, by kTier...
+PFVOX_CONSTANT(uint, kCountFieldStates, 11u);  // three, by kField...
+PFVOX_CONSTANT(uint, kCountFieldAgrees, 14u);  // the octree says the same
+PFVOX_CONSTANT(uint, kViewCounterCount, 16u);
 
 PFVOX_STRUCT(ViewPushConstants) {
     uvec2 scene;
     uvec2 parameters;
-    uvec2 pixels;  // one RGBA8 word each, rows from the top
-    uvec2 counters;
-    uvec2 linear;  // vec4 each: colour before the encoding, distance; 0 = write `pixels` instead
-    uvec2 reserved0;
+    uvec2 colours;   // vec4 each: display colour before the encoding, distance; mean of the samples so far
+    uvec2 counters;  // uvec2[kViewCounterCount]
+    uvec2 seen;      // SeenPixel each
+    uvec2 shine;     // SeenShine each; 0 = the scene needs none
+    uint sampleIndex;
+    uint firstRow;   // of the rows that the buffers hold
+    uint rowCount;
+    uint reserved0;
 };
-PFVOX_SIZE(ViewPushConstants, 48);
+PFVOX_SIZE(ViewPushConstants, 64);
 
 // Frames that follow one another become one picture: view_resolve.comp.
 PFVOX_STRUCT(ResolveParameters) {
@@ -87,9 +141,9 @@ PFVOX_OFFSET(ResolveParameters, lastPosition, 64);
 
 PFVOX_STRUCT(ResolvePushConstants) {
     uvec2 parameters;
-    uvec2 frame;        // vec4 each: colour, distance; from view_scene.comp
+    uvec2 frame;        // vec4 each: colour, distance
     uvec2 lastFrame;
-    uvec2 history;      // vec4 each: colour, number of frames in it; written
+    uvec2 history;      // vec4 each: colour, number of frames in it; written unless 0
     uvec2 lastHistory;
     uvec2 pixels;       // one RGBA8 word each; written
 };

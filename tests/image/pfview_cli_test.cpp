@@ -1,16 +1,8 @@
 // pfview as a program: arguments in, exit code, stdout, stderr and files out.
-#include <gmock/gmock.h>
-#include <sys/wait.h>
-
-#include <cstdio>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <pfvox/pf_vox.hpp>
-#include <sstream>
+#include <algorithm>
 
 #include "png.hpp"
-#include "support/procedural.hpp"
+#include "support/pfview_run.hpp"
 
 namespace pfvox::test {
 namespace {
@@ -19,52 +11,6 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::StartsWith;
 namespace fs = std::filesystem;
-
-struct Outcome {
-    int exitCode = -1;
-    std::string out;
-    std::string err;
-};
-
-std::string contentOf(const fs::path& file) {
-    std::ostringstream text;
-    text << std::ifstream(file, std::ios::binary).rdbuf();
-    return text.str();
-}
-
-class PfviewCli : public ::testing::Test {
-  protected:
-    void SetUp() override {
-        const auto* const info = ::testing::UnitTest::GetInstance()->current_test_info();
-        folder_ = fs::path(PFVOX_TEST_OUTPUT_DIR) / (std::string("pfview-") + info->name());
-        fs::remove_all(folder_);
-        fs::create_directories(folder_);
-    }
-
-    /// Runs in the test's own folder; arguments as a shell reads them. Leaks are those of the driver
-    /// (support/driver_leaks.cpp); the same code is checked for its own in the other tests.
-    Outcome run(const std::string& arguments) const {
-        const std::string command = "cd '" + folder_.string() +
-                                    "' && ASAN_OPTIONS=detect_leaks=0 '" PFVOX_PFVIEW "' " + arguments +
-                                    " > out 2> err";
-        const int status = std::system(command.c_str());
-        return {.exitCode = WIFEXITED(status) ? WEXITSTATUS(status) : -1,
-                .out = contentOf(folder_ / "out"),
-                .err = contentOf(folder_ / "err")};
-    }
-
-    void writeRoom(const std::string& name) const {
-        const auto bytes = encodePfVox(build(demoRoom()), EncodeSettings{});
-        ASSERT_TRUE(bytes) << describe(bytes.error());
-        write(name, {reinterpret_cast<const char*>(bytes->data()), bytes->size()});
-    }
-    void write(const std::string& name, const std::string& content) const {
-        fs::create_directories((folder_ / name).parent_path());
-        std::ofstream(folder_ / name, std::ios::binary) << content;
-    }
-
-    fs::path folder_;
-};
 
 TEST_F(PfviewCli, WritesAScreenshot) {
     writeRoom("my room.pf_vox");
@@ -100,7 +46,8 @@ TEST_F(PfviewCli, WrongUsageIsShortAndOnStderr) {
     writeRoom("a.pf_vox");
     const std::string picture = "a.pf_vox --screenshot a.png ";
     for (const std::string& arguments :
-         {std::string("--no-such-option"), std::string("a.pf_vox --frames 2"), std::string("a.pf_vox --stats-json -"),
+         {std::string("--no-such-option"), std::string("a.pf_vox --frames 2"), picture + "--exposure 17", picture + "--tonemap film",
+          picture + "--probes a.pf_probe --no-probes", picture + "--probe -1",
           std::string("a.pf_vox --camera-path b.json"), std::string("--screenshot a.png"), picture + "--frames 0",
           picture + "--lod-pixels -1", picture + "--size 0x5",
           picture + "--size 99999x5", picture + "--size 12", picture + "--camera 1,2,3",

@@ -3,12 +3,14 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <chrono>
 #include <pfvox/pf_vox.hpp>
 #include <thread>
 
 #include "png.hpp"
 #include "support/image_compare.hpp"
+#include "support/lit_hall.hpp"
 #include "support/picture_fixture.hpp"
 #include "support/procedural.hpp"
 #include "support/temp_folder.hpp"
@@ -19,7 +21,11 @@ namespace {
 using namespace viewer;
 using ::testing::HasSubstr;
 
+namespace fs = std::filesystem;
+
 constexpr glm::uvec2 kSize{160, 120};
+
+fs::path hallProbes() { return fs::path(PFVOX_TESTS_DIR) / "image/golden/hall.pf_probe"; }
 
 VoxelAsset redBox() {
     VoxelAsset asset;
@@ -100,9 +106,12 @@ TEST_F(SessionTest, WithoutAntiAliasingOneFrameIsAll) {
 TEST_F(SessionTest, KeysSwitchViewsWindowsHelpAndCamera) {
     write("room.pf_vox", demoRoom());
     start({.path = folder / "room.pf_vox"});
-    for (int i = 0; i < static_cast<int>(kViewModes); ++i) {
-        press('1' + i);
-        EXPECT_EQ(session->mode, static_cast<ViewMode>(i));
+    for (const ViewEntry& view : viewModes()) {
+        log.dismissStrip();
+        press(view.key, view.control);
+        EXPECT_EQ(session->mode, view.mode);
+        EXPECT_EQ(log.strip().has_value(), view.needs != ViewNeeds::Nothing) << view.name;
+        EXPECT_TRUE(session->draw(kSize)) << view.name << ": the final picture stands in";
     }
     press('H');
     EXPECT_TRUE(session->showHelp);
@@ -244,6 +253,69 @@ TEST_F(SessionTest, CamerasAreRememberedForEachFile) {
     const ViewCamera asked{.position = {9, 9, 9}, .target = {0, 0, 0}};
     start({.path = folder / "a.pf_vox", .camera = {.camera = asked, .name = {}}}, memory);
     EXPECT_EQ(session->camera.camera(), asked) << "what the command line says goes before";
+}
+
+TEST_F(SessionTest, ProbesBesideTheSceneLightItAndAreReadAgain) {
+    writeLitHall(folder.path());
+    fs::copy_file(hallProbes(), folder / "hall.pf_probe");
+    start({.path = folder / "hall.toml", .mode = ViewMode::Tiers});
+    ASSERT_NE(session->probes(), nullptr);
+    EXPECT_EQ(session->probes()->probes.size(), 24u);
+    EXPECT_TRUE(session->probes()->ofThisScene);
+    EXPECT_THAT(log.messages()[log.messages().size() - 2].text, HasSubstr("probes from"));
+    const Picture tiers = drawn();
+    EXPECT_GT(session->statistics().tiers[1], 0u);
+
+    // Broken, cut short, from another format: the last good ones stay, and the strip tells what to do.
+    const std::string good = readText(folder / "hall.pf_probe");
+    for (const std::string& bad : {std::string("no probes at all, but long enough for a header ................"),
+                                   good.substr(0, good.size() / 2), readText(folder / "hall.pf_vox")}) {
+        writeText(folder / "hall.pf_probe", bad);
+        settle();
+        ASSERT_TRUE(log.strip());
+        EXPECT_THAT(*log.strip(), HasSubstr("hall.pf_probe"));
+        EXPECT_THAT(*log.strip(), HasSubstr("probe-bake"));
+        ASSERT_NE(session->probes(), nullptr);
+        EXPECT_TRUE(drawn().pixels == tiers.pixels);
+        log.dismissStrip();
+    }
+    writeText(folder / "hall.pf_probe", good);
+    settle();
+    EXPECT_FALSE(log.strip());
+    session->dropProbes();
+    EXPECT_EQ(session->probes(), nullptr);
+    EXPECT_FALSE(drawn().pixels == tiers.pixels);
+    session->loadProbes(folder / "hall.pf_probe");
+    EXPECT_TRUE(drawn().pixels == tiers.pixels);
+}
+
+TEST_F(SessionTest, ProbesThatAppearAreTakenAndThoseOfAnotherSceneAreToldApart) {
+    writeLitHall(folder.path());
+    start({.path = folder / "hall.toml"});
+    EXPECT_EQ(session->probes(), nullptr);
+    fs::copy_file(hallProbes(), folder / "hall.pf_probe");
+    settle();
+    ASSERT_NE(session->probes(), nullptr);
+    writeText(folder / "hall.toml", std::string(kLitHallScene) + "translateVec = [0.1, 0, 0]\n");
+    settle();
+    ASSERT_NE(session->probes(), nullptr);
+    EXPECT_FALSE(session->probes()->ofThisScene);
+    const auto messages = log.messages();
+    EXPECT_TRUE(std::ranges::any_of(messages, [](const Message& m) {
+        return m.kind == MessageKind::Warning && m.text.find("probe-bake '") != std::string::npos;
+    }));
+}
+
+TEST_F(SessionTest, AProbeFileOpensItsScene) {
+    writeLitHall(folder.path());
+    fs::copy_file(hallProbes(), folder / "hall.pf_probe");
+    start({.path = folder / "hall.pf_probe"});
+    ASSERT_NE(session->shown(), nullptr);
+    EXPECT_EQ(session->shown()->path.file.filename(), "hall.toml");
+    EXPECT_NE(session->probes(), nullptr);
+    fs::copy_file(hallProbes(), folder / "alone.pf_probe");
+    session->open(folder / "alone.pf_probe");
+    EXPECT_THAT(log.strip().value_or(""), HasSubstr("alone.toml"));
 }
 
 }  // namespace

@@ -1,19 +1,15 @@
 #include "commands.hpp"
 
 #include <array>
+#include <vector>
+
+#include "view_modes.hpp"
 
 namespace pfvox::viewer {
 
 namespace {
 
-constexpr std::array kBindings{
-    KeyBinding{'1', false, Command::ShowView, 0, "1", "final: sun with shadow, sky, emission"},
-    KeyBinding{'2', false, Command::ShowView, 1, "2", "albedo"},
-    KeyBinding{'3', false, Command::ShowView, 2, "3", "normals"},
-    KeyBinding{'4', false, Command::ShowView, 3, "4", "material index"},
-    KeyBinding{'5', false, Command::ShowView, 4, "5", "depth in the octree"},
-    KeyBinding{'6', false, Command::ShowView, 5, "6", "traversal steps as a heat map"},
-    KeyBinding{'7', false, Command::ShowView, 6, "7", "level of detail that was hit"},
+constexpr std::array kOthers{
     KeyBinding{'F', false, Command::FrameAll, 0, "F", "frame everything"},
     KeyBinding{'C', false, Command::ToggleCameraMode, 0, "C", "orbit or fly"},
     KeyBinding{'V', false, Command::NextCamera, 0, "V", "next camera of the scene"},
@@ -38,14 +34,29 @@ constexpr std::array kHeld{
     HeldBinding{"drop files", "open them"},
 };
 
+std::vector<KeyBinding> allBindings() {
+    std::vector<KeyBinding> all;
+    for (const ViewEntry& view : viewModes()) {
+        all.push_back({.key = view.key,
+                       .control = view.control,
+                       .command = Command::ShowView,
+                       .argument = static_cast<int>(view.mode),
+                       .keyText = view.keyText,
+                       .what = view.what});
+    }
+    all.insert(all.end(), kOthers.begin(), kOthers.end());
+    return all;
+}
+
 }  // namespace
 
 std::span<const KeyBinding> keyBindings() {
-    return kBindings;
+    static const std::vector<KeyBinding> kAll = allBindings();
+    return kAll;
 }
 
 const KeyBinding* bindingOf(Key key, bool control) {
-    for (const KeyBinding& binding : kBindings) {
+    for (const KeyBinding& binding : keyBindings()) {
         if (binding.key == key && binding.control == control) return &binding;
     }
     return nullptr;

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <pfvox/files.hpp>
 #include <pfvox/scene.hpp>
@@ -33,26 +35,64 @@ void reportFindings(const RunReport& run, const gpu::Device& device, Diagnostics
         diagnostics.warn("view-capped-rays",
                          fmt::format("{} rays were given up after too many steps", run.picture.cappedRays));
     }
+    if (run.picture.withoutValue != 0) {
+        diagnostics.warn("view-no-indirect",
+                         fmt::format("{} samples have no indirect light in the probes", run.picture.withoutValue));
+    }
     for (const std::string& message : device.validationMessages())
         diagnostics.warn("vulkan-validation", message);
+}
+
+using Clock = std::chrono::steady_clock;
+double msSince(Clock::time_point start) {
+    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
 /// Everything that a picture is drawn from.
 struct Stage {
     gpu::Device& device;
-    const gpu::Scene& scene;
+    PictureInput input;
     const Options& options;
 };
+
+/// Frames one after the other, many in one piece of device work where they are fast.
+Result<void> drawFrames(const Stage& stage, FrameSequence& frames, std::uint32_t count, RunReport& run) {
+    constexpr double kPieceMs = 200.0;
+    std::uint32_t together = 1;
+    const Clock::time_point started = Clock::now();
+    while (run.frames.size() < count) {
+        const auto left = static_cast<std::uint32_t>(count - run.frames.size());
+        PFVOX_TRY(const DrawnFrames, drawn,
+                  frames.drawMany(stage.device, stage.input, run.camera, run.settings, std::min(together, left)));
+        run.picture += drawn.statistics;
+        run.frames.insert(run.frames.end(), drawn.times.begin(), drawn.times.end());
+        const double frameMs = std::max(msSince(started) / static_cast<double>(run.frames.size()), 1e-3);
+        together = static_cast<std::uint32_t>(std::clamp(kPieceMs / frameMs, 1.0, 1.0 * FrameSequence::kMaxTogether));
+    }
+    run.wallMs = msSince(started);
+    return {};
+}
 
 /// The mean of several frames; statistics are those of all together.
 Result<void> drawAccumulated(const Stage& stage, RunReport& run) {
     PFVOX_TRY(FrameSequence, frames, FrameSequence::create(stage.device));
-    for (std::uint32_t i = 0; i < stage.options.frames; ++i) {
-        PFVOX_TRY(const PictureStatistics, frame, frames.draw(stage.device, stage.scene, run.camera, run.settings));
-        run.picture += frame;
-    }
+    PFVOX_CHECK(drawFrames(stage, frames, stage.options.frames, run));
     PFVOX_TRY(const Picture, picture, frames.picture(stage.device));
     return writePng(stage.options.screenshot, picture);
+}
+
+/// Frames without a picture, once programs are made and clocks are up.
+Result<void> measure(const Stage& stage, RunReport& run) {
+    constexpr double kWarmUpMs = 300.0;
+    PFVOX_TRY(FrameSequence, frames, FrameSequence::create(stage.device));
+    const Clock::time_point started = Clock::now();
+    std::uint32_t together = 1;
+    do {
+        PFVOX_TRY(const DrawnFrames, drawn,
+                  frames.drawMany(stage.device, stage.input, run.camera, run.settings, together));
+        if (sumOf(drawn.times.back()) < 2.0) together = FrameSequence::kMaxTogether;
+    } while (msSince(started) < kWarmUpMs);
+    return drawFrames(stage, frames, stage.options.frames, run);
 }
 
 /// "flight.png" -> "flight-0001.png" and so on.
@@ -72,14 +112,23 @@ Result<CameraPath> readCameraPath(const std::filesystem::path& file) {
     return tl::make_unexpected(std::move(error));
 }
 
+/// One picture and its times.
+Result<Picture> drawStill(const Stage& stage, const PictureRenderer& renderer, RunReport& run) {
+    PictureStatistics one;
+    const Clock::time_point started = Clock::now();
+    PFVOX_TRY(Picture, picture, renderer.render(stage.device, stage.input, run.camera, run.settings, one));
+    run.wallMs += msSince(started);
+    run.picture += one;
+    run.frames.push_back(one.passMs);
+    return picture;
+}
+
 Result<void> drawFlight(const Stage& stage, RunReport& run) {
     PFVOX_TRY(const CameraPath, path, readCameraPath(stage.options.cameraPath));
     PFVOX_TRY(const PictureRenderer, renderer, PictureRenderer::create(stage.device));
     for (std::uint32_t i = 0; i < stage.options.frames; ++i) {
         run.camera = path.atFrame(i, stage.options.frames);
-        PictureStatistics one;
-        PFVOX_TRY(const Picture, picture, renderer.render(stage.device, stage.scene, run.camera, run.settings, one));
-        run.picture += one;
+        PFVOX_TRY(const Picture, picture, drawStill(stage, renderer, run));
         PFVOX_CHECK(writePng(numbered(stage.options.screenshot, i + 1), picture));
     }
     return {};
@@ -87,14 +136,21 @@ Result<void> drawFlight(const Stage& stage, RunReport& run) {
 
 Result<void> drawOne(const Stage& stage, RunReport& run) {
     PFVOX_TRY(const PictureRenderer, renderer, PictureRenderer::create(stage.device));
-    PFVOX_TRY(const Picture, picture,
-              renderer.render(stage.device, stage.scene, run.camera, run.settings, run.picture));
+    PFVOX_TRY(const Picture, picture, drawStill(stage, renderer, run));
     return writePng(stage.options.screenshot, picture);
 }
 
 Result<void> draw(const Stage& stage, RunReport& run) {
+    if (stage.options.screenshot.empty()) return measure(stage, run);
     if (!stage.options.cameraPath.empty()) return drawFlight(stage, run);
     return stage.options.frames > 1 ? drawAccumulated(stage, run) : drawOne(stage, run);
+}
+
+/// --probe names a probe that is there.
+Result<void> checkAtlas(const PictureSettings& settings, const ShownProbes* probes) {
+    if (probes == nullptr || settings.atlas.probe < static_cast<std::int64_t>(probes->probes.size())) return {};
+    return fail(ErrorCode::BadReference, fmt::format("--probe {}: the field has {} probes, from 0 on",
+                                                     settings.atlas.probe, probes->probes.size()));
 }
 
 }  // namespace
@@ -102,23 +158,33 @@ Result<void> draw(const Stage& stage, RunReport& run) {
 Result<void> runHeadless(const Options& options, Diagnostics& diagnostics) {
     const auto started = std::chrono::steady_clock::now();
     PFVOX_TRY(const OpenPath, path, openPath(options.file));
+    ProbeRequest request = options.probes;
+    if (request.file.empty() && !request.none) request.file = path.probes;
     PFVOX_TRY(const LoadedScene, loaded, loadScene(path.file, Limits{}, diagnostics));
     PFVOX_TRY(const std::optional<ViewCamera>, camera, chosenCamera(options.camera, path.file, loaded.scene));
     PictureSettings settings = options.picture;
     settings.lighting = lightingOf(loaded.scene);
+    settings.lighting.exposure = static_cast<float>(std::exp2(options.exposureStops.value_or(0.0)));
     const std::chrono::duration<double, std::milli> loadTime = std::chrono::steady_clock::now() - started;
 
     PFVOX_TRY(gpu::Device, device,
               gpu::Device::open({.selector = options.device, .validation = options.validation}));
     PFVOX_TRY(const gpu::Scene, scene, gpu::Scene::build(device, gpu::partsOf(loaded), diagnostics));
+    PFVOX_TRY(const std::optional<ShownProbes>, probes,
+              findProbes(device, request, loaded, path.file, diagnostics));
+    const ShownProbes* const light = probes ? &*probes : nullptr;
+    if (light != nullptr) diagnostics.note("probes", "indirect light from " + light->file.string());
+    PFVOX_CHECK(checkView(settings.mode, light, path.file));
+    PFVOX_CHECK(checkAtlas(settings, light));
 
     const double aspect = static_cast<double>(options.picture.width) / options.picture.height;
     RunReport run{.device = device.info(),
                   .scene = scene.statistics(),
                   .camera = camera.value_or(cameraFraming(scene.bounds(), aspect, ViewCamera{}.fovYDegrees)),
                   .settings = settings,
+                  .probes = light,
                   .loadMs = loadTime.count()};
-    PFVOX_CHECK(draw({device, scene, options}, run));
+    PFVOX_CHECK(draw({device, {scene, light}, options}, run));
     run.memory = device.memory();
     PFVOX_CHECK(writeStatistics(options.statisticsFile, toJson(run)));
     reportFindings(run, device, diagnostics);

@@ -36,7 +36,7 @@ Result<void> printDevices() {
 
 Result<void> run(const Options& options, Diagnostics& diagnostics) {
     if (options.listDevices) return printDevices();
-    if (!options.screenshot.empty()) return runHeadless(options, diagnostics);
+    if (options.isHeadless()) return runHeadless(options, diagnostics);
 #ifdef PFVOX_WITH_WINDOW
     return runWindow(options, diagnostics);
 #else

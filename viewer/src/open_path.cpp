@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <system_error>
 
+#include "shown_probes.hpp"
+
 namespace pfvox::viewer {
 
 namespace fs = std::filesystem;
@@ -39,6 +41,10 @@ Result<OpenPath> openPath(const fs::path& path) {
     if (!fs::exists(path, error)) {
         return tl::make_unexpected(
             Error{.code = ErrorCode::FileNotFound, .message = "there is no such file or folder", .file = path});
+    }
+    if (path.extension() == ".pf_probe") {
+        PFVOX_TRY(const fs::path, scene, sceneBeside(path));
+        return OpenPath{.file = scene, .siblings = {scene}, .probes = path};
     }
     if (!fs::is_directory(path, error)) return OpenPath{.file = path, .siblings = {path}};
     PFVOX_TRY(std::vector<fs::path>, files, filesWith(path, ".toml"));

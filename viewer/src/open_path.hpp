@@ -11,10 +11,11 @@ namespace pfvox::viewer {
 struct OpenPath {
     std::filesystem::path file;                   ///< a scene or a PF_VOX file
     std::vector<std::filesystem::path> siblings;  ///< files to go through, sorted, `file` among them
+    std::filesystem::path probes = {};            ///< named instead of its scene; else empty
 };
 
-/// A file stands for itself. A folder gives its scenes (*.toml that have models) and PF_VOX files, scenes first.
-/// Errors: FileNotFound, NothingToConvert (a folder without such files; says how to make one).
+/// A file stands for itself, a .pf_probe file for the scene or .pf_vox file beside it. A folder gives its scenes (*.toml that have models) and PF_VOX files, scenes first.
+/// Errors: FileNotFound (also of probes without a scene beside them), NothingToConvert (a folder without such files; says how to make one).
 Result<OpenPath> openPath(const std::filesystem::path& path);
 
 /// `step` files further in the list, beginning anew at its end.

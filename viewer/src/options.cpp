@@ -19,23 +19,26 @@ constexpr std::uint32_t kMaxEdge = 16384;
 tools::HelpText helpText() {
     using tools::ExitCode;
     return {.summary = "pfview shows a .pf_vox file or a scene of such files, in a window or as a picture.",
-            .usage = {"pfview [options] [file.pf_vox | scene.toml | folder]"},
+            .usage = {"pfview [options] [file.pf_vox | scene.toml | file.pf_probe | folder]"},
             .examples = {{"pfview hall.pf_vox", "a window"},
                          {"pfview scene.toml --camera court", "at a camera of the scene"},
                          {"pfview hall.pf_vox --screenshot hall.png", "a picture"},
                          {"pfview hall.pf_vox --screenshot hall.png --size 640x480 --view normals", "of something else"},
                          {"pfview scene.toml --screenshot court.png --camera court --frames 16", "with less noise"},
                          {"pfview scene.toml --screenshot flight.png --camera-path flight.json --frames 120", "a flight"},
-                         {"pfview hall.pf_vox --screenshot hall.png --camera 4,3,8,0,1,0,50 --stats-json -", "with figures"}},
+                         {"pfview hall.pf_vox --screenshot hall.png --camera 4,3,8,0,1,0,50 --stats-json -", "with figures"},
+                         {"pfview scene.toml --probes scene.pf_probe --view tiers --screenshot tiers.png", "where light comes from"},
+                         {"pfview scene.toml --size 1920x1080 --frames 1000 --stats-json -", "figures of frames alone"}},
             .details = {"With --screenshot no window system is needed."},
             .exitCodes = {ExitCode::Ok, ExitCode::Usage, ExitCode::CannotReadOrWrite, ExitCode::InvalidInput,
                           ExitCode::Unsupported, ExitCode::Gpu, ExitCode::Internal}};
 }
 
-std::vector<std::string> viewNames() {
-    std::vector<std::string> names;
-    for (std::size_t i = 0; i < kViewModes; ++i) names.emplace_back(toString(static_cast<ViewMode>(i)));
-    return names;
+template <class Entries>
+std::vector<std::string> wordsOf(const Entries& entries) {
+    std::vector<std::string> words;
+    for (const auto& entry : entries) words.emplace_back(entry.name);
+    return words;
 }
 
 /// The whole text as numbers between separators; nothing if any part is not a finite number.
@@ -86,12 +89,50 @@ struct RawOptions {
     std::string size;
     std::string camera;
     std::string view;
+    std::string toneMap;
+    double exposureStops = 0.0;
+    CLI::Option* exposure = nullptr;
+    CLI::Option* samples = nullptr;
 };
 
+/// "a, b or c".
+template <class Entries>
+std::string namesOf(const Entries& entries) {
+    std::string names;
+    for (std::size_t i = 0; i < entries.size(); ++i)
+        names += (i == 0 ? "" : i + 1 == entries.size() ? " or " : ", ") + std::string(entries[i].name);
+    return names;
+}
+
+void declareLight(CLI::App& app, Options& options, RawOptions& raw) {
+    CLI::Option_group* const light = app.add_option_group("Light");
+    CLI::Option* const probes =
+        light
+            ->add_option("--probes", options.probes.file,
+                         "Indirect light from this .pf_probe file; default: the one beside the scene, by its name")
+            ->type_name("FILE")
+            ->check(tools::suggestFiles({".pf_probe"}));
+    light->add_flag("--no-probes", options.probes.none, "Guess indirect light from the sky even if there are probes")
+        ->excludes(probes);
+    raw.exposure = light->add_option("--exposure", raw.exposureStops, "Stops brighter, -16 to 16; default 0")
+                       ->check(CLI::Range(-16.0, 16.0))
+                       ->type_name("STOPS");
+    light->add_option("--tonemap", raw.toneMap, namesOf(toneMaps()) + "; default standard")
+        ->type_name("NAME")
+        ->check(tools::suggestWords(wordsOf(toneMaps())));
+    light->add_option("--probe", options.picture.atlas.probe, "Views of the atlas: this probe alone, by its index")
+        ->check(CLI::Range(0, 1 << 30))
+        ->type_name("N");
+    light->add_option("--probe-page", options.picture.atlas.page, "Views of the atlas: this page of probes, from 0")
+        ->check(CLI::Range(0u, 1u << 30))
+        ->type_name("N");
+}
+
 void declare(CLI::App& app, Options& options, RawOptions& raw) {
-    app.add_option("file", options.file, "The .pf_vox file, scene (.toml) or folder to look at")
+    app.add_option("file", options.file,
+                   "The .pf_vox file, scene (.toml), .pf_probe file beside its scene, or folder to look at")
         ->type_name("FILE")
-        ->check(tools::suggestFiles({".pf_vox", ".toml"}));
+        ->check(tools::suggestFiles({".pf_vox", ".toml", ".pf_probe"}));
 
     CLI::Option_group* const picture = app.add_option_group("Picture");
     picture->add_option("--screenshot", options.screenshot, "Write a PNG and exit instead of opening a window; needs no window system")
@@ -104,19 +145,19 @@ void declare(CLI::App& app, Options& options, RawOptions& raw) {
             "Name of a camera, or px,py,pz,tx,ty,tz[,fovY] in metres and degrees; default: the scene's "
             "first camera, else frames everything")
         ->type_name("CAMERA");
-    picture->add_option("--view", raw.view, "final, albedo, normals, material, depth, steps or lod; default final")
+    picture->add_option("--view", raw.view, namesOf(viewModes()) + "; default final")
         ->type_name("MODE")
-        ->check(tools::suggestWords(viewNames()));
-    picture
+        ->check(tools::suggestWords(wordsOf(viewModes())));
+    raw.samples = picture
         ->add_option("--samples", options.picture.samplesPerPixel,
-                     "Camera rays for each pixel, 1 to 256; default 4")
+                     "Camera rays for each pixel and frame, 1 to 256; default 4, without --screenshot 1")
         ->check(CLI::Range(1u, 256u))
         ->type_name("N");
 
     picture
         ->add_option("--frames", options.frames,
                      "Frames of which the picture is the mean, as in the window; with --camera-path: numbered "
-                     "pictures. 1 to 100000, default 1")
+                     "pictures; without --screenshot: frames that are measured. 1 to 100000, default 1")
         ->check(CLI::Range(1u, 100000u))
         ->type_name("N");
     picture
@@ -130,6 +171,8 @@ void declare(CLI::App& app, Options& options, RawOptions& raw) {
         ->check(CLI::Range(0.0, 64.0))
         ->type_name("N");
 
+    declareLight(app, options, raw);
+
     CLI::Option_group* const device = app.add_option_group("Device");
     device
         ->add_option("--device", options.device,
@@ -140,7 +183,9 @@ void declare(CLI::App& app, Options& options, RawOptions& raw) {
                      "Run with the Vulkan validation layer; its messages are failures");
 
     CLI::Option_group* const output = app.add_option_group("Output");
-    output->add_option("--stats-json", options.statisticsFile, "Write statistics as JSON; - is stdout")
+    output
+        ->add_option("--stats-json", options.statisticsFile,
+                     "Write statistics as JSON; - is stdout. Without --screenshot no picture is made: for measuring")
         ->type_name("FILE")
         ->check(tools::suggestFiles({".json"}));
     output->add_flag("-q,--quiet", options.quiet, "No messages but errors");
@@ -159,12 +204,19 @@ void understand(const RawOptions& raw, Options& options) {
         if (!mode) throw CLI::ValidationError("--view", fmt::format("there is no view '{}'", raw.view));
         options.picture.mode = *mode;
     }
+    if (raw.exposure->count() != 0) options.exposureStops = raw.exposureStops;
+    if (!raw.toneMap.empty()) {
+        options.toneMap = toneMapFrom(raw.toneMap);
+        if (!options.toneMap) throw CLI::ValidationError("--tonemap", fmt::format("there is no tone map '{}'", raw.toneMap));
+    }
+    options.picture.toneMap = options.toneMap.value_or(ToneMap::Standard);
+    if (options.screenshot.empty() && raw.samples->count() == 0) options.picture.samplesPerPixel = 1;
     if (options.listDevices) return;
     if (options.screenshot.empty()) {
-        if (!options.statisticsFile.empty()) throw CLI::ValidationError("--stats-json", "needs --screenshot");
         if (!options.cameraPath.empty()) throw CLI::ValidationError("--camera-path", "needs --screenshot");
-        if (options.frames != 1) throw CLI::ValidationError("--frames", "needs --screenshot");
-        return;
+        if (options.frames != 1 && !options.isHeadless())
+            throw CLI::ValidationError("--frames", "needs --screenshot or --stats-json");
+        if (!options.isHeadless()) return;
     }
     if (options.file.empty()) throw CLI::ValidationError("file", "a .pf_vox file or a scene is needed");
 }
@@ -172,7 +224,7 @@ void understand(const RawOptions& raw, Options& options) {
 }  // namespace
 
 std::variant<Options, EarlyExit> parseOptions(int argc, const char* const* argv) {
-    const auto tool = tools::makeTool("pfview", helpText(), fmt::format("pfview {}\nreads PF_VOX 1.x", PFVOX_VERSION));
+    const auto tool = tools::makeTool("pfview", helpText(), fmt::format("pfview {}\nreads PF_VOX 1.x, PF_PROBE 1.x", PFVOX_VERSION));
     CLI::App& app = *tool;
     Options options;
     RawOptions raw;

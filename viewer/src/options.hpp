@@ -16,6 +16,9 @@ struct Options {
     std::filesystem::path screenshot;
     PictureSettings picture;
     CameraRequest camera;
+    ProbeRequest probes;
+    std::optional<double> exposureStops;  ///< nothing = 0, in the window what it was last
+    std::optional<ToneMap> toneMap;
     std::filesystem::path cameraPath;  ///< a flight instead of one picture; empty = none
     std::uint32_t frames = 1;          ///< of which a picture is the mean; with cameraPath: pictures
     std::string device;                ///< gpu::DeviceOptions::selector
@@ -24,6 +27,9 @@ struct Options {
     bool listDevices = false;
     bool validation = false;
     bool quiet = false;
+
+    /// Without a window: a picture, or figures alone.
+    bool isHeadless() const { return !screenshot.empty() || !statisticsFile.empty(); }
 };
 
 /// What to print instead of working: help and version go to stdout with exit code 0, faults to stderr with 2.

@@ -1,87 +1,42 @@
 #include "picture.hpp"
 
-#include <array>
-#include <cmath>
+#include <algorithm>
+#include <numeric>
 #include <pfvox_shaders/shaders.hpp>
 #include <utility>
 
 #include "view_parameters.hpp"
+#include "view_passes.hpp"
 
 namespace pfvox::viewer {
 
 namespace {
 
-struct NamedMode {
-    std::string_view name;
-    ViewMode mode;
-    std::uint32_t shaderMode;
-};
-constexpr std::array kModes{
-    NamedMode{"final", ViewMode::Final, shared::kViewFinal},
-    NamedMode{"albedo", ViewMode::Albedo, shared::kViewAlbedo},
-    NamedMode{"normals", ViewMode::Normals, shared::kViewNormals},
-    NamedMode{"material", ViewMode::Material, shared::kViewMaterial},
-    NamedMode{"depth", ViewMode::Depth, shared::kViewDepth},
-    NamedMode{"steps", ViewMode::Steps, shared::kViewSteps},
-    NamedMode{"lod", ViewMode::Lod, shared::kViewLod},
-};
-
-const NamedMode& entryOf(ViewMode mode) {
-    for (const NamedMode& entry : kModes) {
-        if (entry.mode == mode) return entry;
-    }
-    return kModes[0];
-}
+constexpr std::uint64_t kPixelsOfBand = 1u << 22;
 
 }  // namespace
 
-shared::ViewParameters viewParametersOf(const ViewCamera& camera, const PictureSettings& settings) {
-    constexpr float kStepsAtHotEnd = 96.0f;
-    const CameraFrame frame = frameOf(camera);
-    const double tanY = std::tan(glm::radians(0.5 * camera.fovYDegrees));
-    const double tanX = tanY * settings.width / settings.height;
-    const Lighting& light = settings.lighting;
-    return {.cameraPosition = glm::vec3(camera.position),
-            .width = settings.width,
-            .cameraForward = glm::vec3(frame.forward),
-            .height = settings.height,
-            .cameraRight = glm::vec3(frame.right * tanX),
-            .samplesPerPixel = settings.samplesPerPixel,
-            .cameraUp = glm::vec3(frame.up * tanY),
-            .mode = entryOf(settings.mode).shaderMode,
-            .sunDirection = glm::normalize(light.sunDirection),
-            .exposure = light.exposure,
-            .sunIrradiance = light.sunIrradiance,
-            .stepScale = kStepsAtHotEnd,
-            .skyZenith = light.skyZenith,
-            .cone = static_cast<float>(2.0 * tanY / settings.height) * settings.lodPixels,
-            .skyHorizon = light.skyHorizon,
-            .firstSample = 0,
-            .skyGround = light.skyGround,
-            .reserved2 = 0};
+double sumOf(const PassTimes& times) {
+    return std::accumulate(times.begin(), times.end(), 0.0);
 }
 
 PictureStatistics& PictureStatistics::operator+=(const PictureStatistics& other) {
+    const auto add = [](auto& sums, const auto& more) {
+        for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += more[i];
+    };
     gpuMs += other.gpuMs;
+    add(passMs, other.passMs);
     cameraRays += other.cameraRays;
     steps += other.steps;
     hits += other.hits;
     cappedRays += other.cappedRays;
+    sunRays += other.sunRays;
+    reflectionRays += other.reflectionRays;
+    add(tiers, other.tiers);
+    withoutValue += other.withoutValue;
+    add(fieldStates, other.fieldStates);
+    fieldAgrees += other.fieldAgrees;
     return *this;
-}
-
-PictureStatistics statisticsOf(const shared::ViewCounters& counters, double gpuMs) {
-    const auto join = [](std::uint32_t low, std::uint32_t high) { return std::uint64_t{high} << 32 | low; };
-    return {.gpuMs = gpuMs,
-            .cameraRays = join(counters.raysLow, counters.raysHigh),
-            .steps = join(counters.stepsLow, counters.stepsHigh),
-            .hits = counters.primaryHits,
-            .cappedRays = counters.cappedRays};
-}
-
-glm::uvec3 groupsOf(const PictureSettings& settings) {
-    const std::uint32_t edge = shared::kViewGroupEdge;
-    return {(settings.width + edge - 1) / edge, (settings.height + edge - 1) / edge, 1};
 }
 
 Lighting lightingOf(const Scene& scene) {
@@ -93,49 +48,98 @@ Lighting lightingOf(const Scene& scene) {
             .skyGround = glm::vec3(scene.sky.ground)};
 }
 
-std::optional<ViewMode> viewModeFrom(std::string_view name) {
-    for (const NamedMode& entry : kModes) {
-        if (entry.name == name) return entry.mode;
-    }
-    return std::nullopt;
-}
+/// Rows of a picture, and the buffers that they are drawn with.
+struct PictureRenderer::Band {
+    const gpu::Buffer& parameters;
+    const gpu::Buffer& resolveParameters;
+    const gpu::Buffer& counters;
+    const gpu::Buffer& colours;
+    const gpu::Buffer& pixels;
+    std::uint32_t firstRow = 0;
+    std::uint32_t rowCount = 0;
+};
 
-std::string_view toString(ViewMode mode) {
-    return entryOf(mode).name;
-}
+PictureRenderer::PictureRenderer(gpu::Program resolve)
+    : resolve_(std::move(resolve)),
+      passes_(std::make_unique<ViewPasses>()),
+      seen_(std::make_unique<SeenBuffers>()) {}
+PictureRenderer::PictureRenderer(PictureRenderer&&) noexcept = default;
+PictureRenderer& PictureRenderer::operator=(PictureRenderer&&) noexcept = default;
+PictureRenderer::~PictureRenderer() = default;
 
 Result<PictureRenderer> PictureRenderer::create(gpu::Device& device) {
-    PFVOX_TRY(gpu::Program, program,
-              device.createProgram(shaders::kViewScene, sizeof(shared::ViewPushConstants), "view scene"));
-    return PictureRenderer(std::move(program));
+    PFVOX_TRY(gpu::Program, resolve,
+              device.createProgram(shaders::kViewResolve, sizeof(shared::ResolvePushConstants), "view resolve"));
+    return PictureRenderer(std::move(resolve));
 }
 
-Result<Picture> PictureRenderer::render(gpu::Device& device, const gpu::Scene& scene,
-                                        const ViewCamera& camera, const PictureSettings& settings,
-                                        PictureStatistics& statistics) const {
+Result<void> PictureRenderer::drawBand(gpu::Device& device, const PictureInput& input, const PictureSettings& settings,
+                                       const Band& band, PictureStatistics& statistics) const {
+    PassList list;
+    PFVOX_CHECK(passes_->add(device, input, settings,
+                             {.parameters = band.parameters.addressWords(),
+                              .colours = band.colours.addressWords(),
+                              .counters = band.counters.addressWords(),
+                              .buffers = seen_.get(),
+                              .firstRow = band.firstRow,
+                              .rowCount = band.rowCount},
+                             list));
+    shared::ResolveParameters resolve{};  // no history
+    resolve.width = settings.width;
+    resolve.height = band.rowCount;
+    PFVOX_CHECK(device.upload(band.resolveParameters, 0, gpu::bytesOf(resolve)));
+    const shared::ResolvePushConstants push{.parameters = band.resolveParameters.addressWords(),
+                                            .frame = band.colours.addressWords(),
+                                            .lastFrame = {0, 0},
+                                            .history = {0, 0},
+                                            .lastHistory = {0, 0},
+                                            .pixels = band.pixels.addressWords()};
+    list.add(Pass::Resolve, resolve_, push, groupsFor(settings.width, band.rowCount));
+    PFVOX_TRY(const std::vector<double>, times, device.runTimed(list.dispatches()));
+    for (std::size_t i = 0; i < times.size(); ++i) {
+        statistics.passMs[static_cast<std::size_t>(list.passes()[i])] += times[i];
+        statistics.gpuMs += times[i];
+    }
+    return {};
+}
+
+Result<Picture> PictureRenderer::render(gpu::Device& device, const PictureInput& input, const ViewCamera& camera,
+                                        const PictureSettings& settings, PictureStatistics& statistics) const {
     Picture picture{.width = settings.width,
                     .height = settings.height,
                     .pixels = std::vector<std::uint32_t>(std::size_t{settings.width} * settings.height)};
-    const shared::ViewParameters parameters = viewParametersOf(camera, settings);
-    shared::ViewCounters counters{};
-    PFVOX_TRY(const gpu::Buffer, parameterBuffer, device.createBuffer(sizeof parameters, "view parameters"));
-    PFVOX_TRY(const gpu::Buffer, counterBuffer, device.createBuffer(sizeof counters, "view counters"));
-    PFVOX_TRY(const gpu::Buffer, pixelBuffer, device.createBuffer(4 * picture.pixels.size(), "view pixels"));
-    PFVOX_CHECK(device.upload(parameterBuffer, 0, gpu::bytesOf(parameters)));
-    PFVOX_CHECK(device.upload(counterBuffer, 0, gpu::bytesOf(counters)));
+    const auto bandRows = static_cast<std::uint32_t>(
+        std::clamp<std::uint64_t>(kPixelsOfBand / settings.width, 1, settings.height));
+    const std::uint64_t bandPixels = std::uint64_t{settings.width} * bandRows;
+    PFVOX_TRY(const gpu::Buffer, parameters, device.createBuffer(sizeof(shared::ViewParameters), "view parameters"));
+    PFVOX_TRY(const gpu::Buffer, resolve, device.createBuffer(sizeof(shared::ResolveParameters), "resolve parameters"));
+    PFVOX_TRY(const gpu::Buffer, counters, device.createBuffer(sizeof(ViewCounts), "view counters"));
+    PFVOX_TRY(const gpu::Buffer, colours, device.createBuffer(sizeof(glm::vec4) * bandPixels, "colours"));
+    PFVOX_TRY(const gpu::Buffer, pixels, device.createBuffer(4 * bandPixels, "view pixels"));
+    PFVOX_CHECK(seen_->ensure(device, input, settings, bandPixels));
+    ViewCounts counts{};
+    PFVOX_CHECK(device.upload(parameters, 0, gpu::bytesOf(viewParametersOf(camera, settings, input))));
+    PFVOX_CHECK(device.upload(counters, 0, gpu::bytesOf(counts)));
 
-    const shared::ViewPushConstants push{.scene = scene.address(),
-                                         .parameters = parameterBuffer.addressWords(),
-                                         .pixels = pixelBuffer.addressWords(),
-                                         .counters = counterBuffer.addressWords(),
-                                         .linear = {0, 0},
-                                         .reserved0 = {0, 0}};
-    const gpu::Dispatch dispatch{
-        .program = &program_, .pushConstants = gpu::bytesOf(push), .groups = groupsOf(settings)};
-    PFVOX_TRY(const double, gpuMs, device.run({&dispatch, 1}));
-    PFVOX_CHECK(device.download(pixelBuffer, 0, std::as_writable_bytes(std::span(picture.pixels))));
-    PFVOX_CHECK(device.download(counterBuffer, 0, std::as_writable_bytes(std::span(&counters, 1))));
-    statistics = statisticsOf(counters, gpuMs);
+    PictureStatistics times;
+    for (std::uint32_t row = 0; row < settings.height; row += bandRows) {
+        const Band band{.parameters = parameters,
+                        .resolveParameters = resolve,
+                        .counters = counters,
+                        .colours = colours,
+                        .pixels = pixels,
+                        .firstRow = row,
+                        .rowCount = std::min(bandRows, settings.height - row)};
+        PFVOX_CHECK(drawBand(device, input, settings, band, times));
+        const std::span<std::uint32_t> rows = std::span(picture.pixels)
+                                                  .subspan(std::size_t{row} * settings.width,
+                                                           std::size_t{band.rowCount} * settings.width);
+        PFVOX_CHECK(device.download(pixels, 0, std::as_writable_bytes(rows)));
+    }
+    PFVOX_CHECK(device.download(counters, 0, std::as_writable_bytes(std::span(counts))));
+    statistics = statisticsOf(counts, std::uint64_t{settings.samplesPerPixel} * picture.pixels.size());
+    statistics.gpuMs = times.gpuMs;
+    statistics.passMs = times.passMs;
     return picture;
 }
 

@@ -1,18 +1,21 @@
 // Pictures: a scene seen by a camera, as 8-bit sRGB pixels.
 //
-//     gpu::Scene + ViewCamera -> [PictureRenderer] -> Picture -> png
+//     gpu::Scene (+ ShownProbes) + ViewCamera -> [PictureRenderer] -> Picture -> png
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
-#include <optional>
+#include <memory>
 #include <pfvox/gpu.hpp>
 #include <pfvox/gpu_scene.hpp>
+#include <pfvox/probe_query.hpp>
 #include <pfvox/scene.hpp>
-#include <string_view>
 #include <vector>
 
 #include "camera.hpp"
+#include "shown_probes.hpp"
+#include "view_modes.hpp"
 
 namespace pfvox::viewer {
 
@@ -23,19 +26,12 @@ struct Picture {
     std::vector<std::uint32_t> pixels;  ///< bytes R, G, B, A in memory
 };
 
-/// What the colours show. The spellings are "final", "albedo", "normals", "material", "depth", "steps" and "lod".
-enum class ViewMode : std::uint8_t {
-    Final,     ///< sun with shadow, sky, emission
-    Albedo,    ///< base colour
-    Normals,   ///< world normal, [-1, 1] to [0, 1]
-    Material,  ///< a colour for each material index
-    Depth,     ///< edge of the leaf in the octree: hot = one voxel, cold = 64 and more
-    Steps,     ///< iterations of the traversal: cold = few
-    Lod,       ///< edge of the cell that was hit: hot = one voxel; dark where it is no level of detail
+/// Which maps the atlas views show.
+struct AtlasChoice {
+    std::int32_t probe = -1;  ///< this one alone, by index in the grid; < 0 = all, in pages
+    std::uint32_t page = 0;   ///< of as many probes as fit; beyond the last page: the last
+    bool operator==(const AtlasChoice&) const = default;
 };
-inline constexpr std::size_t kViewModes = 7;
-std::optional<ViewMode> viewModeFrom(std::string_view name);
-std::string_view toString(ViewMode mode);
 
 /// Light of the viewer: linear RGB.
 struct Lighting {
@@ -56,31 +52,71 @@ struct PictureSettings {
     ViewMode mode = ViewMode::Final;
     /// Levels of detail that are narrower than this many pixels stand for what is in them; 0 = not used.
     float lodPixels = 1.0f;
+    ToneMap toneMap = ToneMap::Standard;
+    AtlasChoice atlas;
     Lighting lighting;
     bool operator==(const PictureSettings&) const = default;
 };
 
+/// What is drawn; all of it outlives the call.
+struct PictureInput {
+    // Implicit: most pictures are of a scene alone.
+    PictureInput(const gpu::Scene& drawn, const ShownProbes* light = nullptr) : scene(drawn), probes(light) {}
+    const gpu::Scene& scene;
+    const ShownProbes* probes;  ///< null = none
+};
+
+/// The programs of a frame, each measured on its own.
+enum class Pass : std::uint8_t { Scene, Geometry, Sun, Reflections, Light, Field, Atlas, Resolve };
+inline constexpr std::size_t kPasses = 8;
+/// "scene", "geometry", ...
+std::string_view toString(Pass pass);
+/// Milliseconds on the device, by Pass.
+using PassTimes = std::array<double, kPasses>;
+double sumOf(const PassTimes& times);
+
+/// Sums over all samples and frames.
 struct PictureStatistics {
     double gpuMs = 0.0;
+    PassTimes passMs{};
     std::uint64_t cameraRays = 0;
     std::uint64_t steps = 0;       ///< octree iterations of all rays, shadows counted
     std::uint64_t hits = 0;        ///< camera rays that met a voxel
     std::uint64_t cappedRays = 0;  ///< given up after too many steps: a fault of ours or of the data
+    std::uint64_t sunRays = 0;
+    std::uint64_t reflectionRays = 0;              ///< shadow rays where they end counted
+    std::array<std::uint64_t, gpu::kProbeTierCount> tiers{};  ///< surface samples by what gave their indirect light
+    std::uint64_t withoutValue = 0;                ///< of these: none, or not finite
+    std::array<std::uint64_t, 3> fieldStates{};    ///< camera rays through the probes: miss, hit, unknown
+    std::uint64_t fieldAgrees = 0;                 ///< of these, the octree says the same (view FieldDifference)
     PictureStatistics& operator+=(const PictureStatistics& other);
 };
+
+class ViewPasses;
+class SeenBuffers;
 
 class PictureRenderer {
   public:
     /// Errors: those of Device::createProgram.
     static Result<PictureRenderer> create(gpu::Device& device);
+    PictureRenderer(PictureRenderer&&) noexcept;
+    PictureRenderer& operator=(PictureRenderer&&) noexcept;
+    ~PictureRenderer();
 
-    /// Errors: GpuOutOfMemory, GpuLost.
-    Result<Picture> render(gpu::Device& device, const gpu::Scene& scene, const ViewCamera& camera,
+    /// A view that needs probes and has none is the final one (checkView tells before). Large pictures are drawn in bands
+    /// of rows. Errors: GpuOutOfMemory, GpuLost.
+    Result<Picture> render(gpu::Device& device, const PictureInput& input, const ViewCamera& camera,
                            const PictureSettings& settings, PictureStatistics& statistics) const;
 
   private:
-    explicit PictureRenderer(gpu::Program program) : program_(std::move(program)) {}
-    gpu::Program program_;
+    explicit PictureRenderer(gpu::Program resolve);
+    struct Band;
+    Result<void> drawBand(gpu::Device& device, const PictureInput& input, const PictureSettings& settings,
+                          const Band& band, PictureStatistics& statistics) const;
+
+    gpu::Program resolve_;
+    std::unique_ptr<ViewPasses> passes_;   ///< programs made when first needed
+    std::unique_ptr<SeenBuffers> seen_;
 };
 
 }  // namespace pfvox::viewer

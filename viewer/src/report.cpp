@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 namespace pfvox::viewer {
@@ -39,13 +41,75 @@ Json pictureJson(const PictureSettings& settings, const PictureStatistics& pictu
             {"samplesPerPixel", settings.samplesPerPixel},
             {"lodPixels", settings.lodPixels},
             {"view", std::string(toString(settings.mode))},
+            {"exposureStops", std::log2(static_cast<double>(settings.lighting.exposure))},
+            {"toneMap", std::string(toString(settings.toneMap))},
             {"gpuMs", picture.gpuMs},
             {"cameraRays", picture.cameraRays},
             {"cameraRaysPerSecond", picture.gpuMs > 0.0 ? rays / picture.gpuMs * 1e3 : 0.0},
+            {"sunRays", picture.sunRays},
+            {"reflectionRays", picture.reflectionRays},
             {"hits", picture.hits},
             {"steps", picture.steps},
             {"stepsPerCameraRay", rays > 0.0 ? static_cast<double>(picture.steps) / rays : 0.0},
             {"cappedRays", picture.cappedRays}};
+}
+
+Json probesJson(const ShownProbes* probes) {
+    if (probes == nullptr) return nullptr;
+    const gpu::GpuProbeStatistics& s = probes->field.statistics();
+    return {{"file", probes->file.string()},
+            {"ofThisScene", probes->ofThisScene},
+            {"count", s.probes},
+            {"active", s.active},
+            {"bytes", s.totalBytes()}};
+}
+
+Json lightJson(const PictureStatistics& picture) {
+    std::uint64_t samples = 0;
+    for (const std::uint64_t tier : picture.tiers) samples += tier;
+    if (samples == 0) return nullptr;
+    Json shares;
+    for (std::size_t i = 0; i < picture.tiers.size(); ++i) {
+        shares[std::string(gpu::toString(static_cast<gpu::ProbeTier>(i)))] =
+            static_cast<double>(picture.tiers[i]) / static_cast<double>(samples);
+    }
+    return {{"lookups", samples}, {"withoutValue", picture.withoutValue}, {"tierShares", shares}};
+}
+
+Json fieldJson(const PictureStatistics& picture) {
+    const auto& [miss, hit, unknown] = picture.fieldStates;
+    if (miss + hit + unknown == 0) return nullptr;
+    return {{"misses", miss}, {"hits", hit}, {"unknown", unknown}, {"agrees", picture.fieldAgrees}};
+}
+
+/// Mean, median and 95th percentile.
+Json spreadJson(std::vector<double> values) {
+    std::ranges::sort(values);
+    double sum = 0.0;
+    for (const double value : values) sum += value;
+    const auto at = [&](double share) {
+        return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1) + 0.5)];
+    };
+    return {{"mean", sum / static_cast<double>(values.size())}, {"median", at(0.5)}, {"p95", at(0.95)}};
+}
+
+Json framesJson(const RunReport& report) {
+    if (report.frames.empty()) return nullptr;
+    Json passes = Json::object();
+    for (std::size_t pass = 0; pass < kPasses; ++pass) {
+        std::vector<double> times;
+        for (const PassTimes& frame : report.frames) times.push_back(frame[pass]);
+        if (std::ranges::any_of(times, [](double t) { return t > 0.0; }))
+            passes[std::string(toString(static_cast<Pass>(pass)))] = spreadJson(std::move(times));
+    }
+    std::vector<double> totals;
+    for (const PassTimes& frame : report.frames) totals.push_back(sumOf(frame));
+    const auto count = static_cast<double>(report.frames.size());
+    return {{"count", report.frames.size()},
+            {"wallMs", report.wallMs},
+            {"framesPerSecond", report.wallMs > 0.0 ? 1e3 * count / report.wallMs : 0.0},
+            {"gpuMs", spreadJson(std::move(totals))},
+            {"passMs", passes}};
 }
 
 }  // namespace
@@ -93,6 +157,10 @@ std::string toJson(const RunReport& report) {
                       {"target", vectorJson(report.camera.target)},
                       {"fovYDegrees", report.camera.fovYDegrees}}},
                     {"picture", pictureJson(report.settings, report.picture)},
+                    {"frames", framesJson(report)},
+                    {"probes", probesJson(report.probes)},
+                    {"light", lightJson(report.picture)},
+                    {"field", fieldJson(report.picture)},
                     {"deviceMemory",
                      {{"currentBytes", report.memory.currentBytes}, {"peakBytes", report.memory.peakBytes}}}};
     return json.dump(2) + "\n";

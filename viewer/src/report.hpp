@@ -16,7 +16,7 @@ int exitCodeOf(ErrorCode code);
 
 std::string deviceTable(const std::vector<gpu::DeviceInfo>& devices);
 
-/// One JSON object: device, scene, camera, picture, memory.
+/// One JSON object (docs/schema/view.schema.json).
 struct RunReport {
     gpu::DeviceInfo device;
     gpu::MemoryUse memory = {};
@@ -24,6 +24,9 @@ struct RunReport {
     ViewCamera camera;
     PictureSettings settings;
     PictureStatistics picture = {};
+    const ShownProbes* probes = nullptr;
+    std::vector<PassTimes> frames = {};  ///< of each frame that was drawn
+    double wallMs = 0.0;                 ///< from the first frame's start to the last one's end
     double loadMs = 0.0;
 };
 std::string toJson(const RunReport& report);

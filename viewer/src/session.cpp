@@ -45,6 +45,7 @@ Result<std::unique_ptr<Session>> Session::create(gpu::Device& device, const Sess
     session->camera.mode = session->settings.cameraMode;
     session->mode = start.mode;
     session->start_ = start;
+    session->atlas = start.atlas;
     if (!start.path.empty()) session->open(start.path);
     return session;
 }
@@ -55,6 +56,8 @@ void Session::open(const fs::path& path) {
         log_->addError(describe(opened.error()));
         return;
     }
+    probeRequest_ = std::exchange(start_.probes, {});
+    if (!opened->probes.empty()) probeRequest_ = {.file = opened->probes};
     load(*std::move(opened), false);
 }
 
@@ -68,13 +71,50 @@ void Session::load(OpenPath path, bool keepCamera) {
     DiagnosticList ignored;
     const bool isScene = path.file.extension() == ".toml";
     const Result<Scene> scene = isScene ? readScene(path.file, Limits{}, ignored) : Result<Scene>(Scene{});
-    watch_.watch(filesOf(path.file, scene ? *scene : Scene{}));
+    watchFiles(scene ? *scene : Scene{});
     const fs::path file = path.file;
     MessageLog* const log = log_;
     loading_ = Loading{.path = std::move(path),
                        .keepCamera = keepCamera,
                        .scene = std::async(std::launch::async,
                                            [file, log] { return loadScene(file, Limits{}, *log); })};
+}
+
+void Session::watchFiles(const Scene& scene) {
+    std::vector<fs::path> files = filesOf(wanted_.file, scene);
+    if (!probeRequest_.none)
+        files.push_back(probeRequest_.file.empty() ? probesBeside(wanted_.file) : probeRequest_.file);
+    watch_.watch(files);
+}
+
+void Session::findProbesOf(const ShownScene& shown) {
+    Result<std::optional<ShownProbes>> found =
+        findProbes(*device_, probeRequest_, shown.loaded, shown.path.file, *log_);
+    if (!found) return log_->addError(describe(found.error()));
+    probes_ = *std::move(found);
+    if (probes_) {
+        log_->add(MessageKind::Note, "probes from " + probes_->file.string());
+    } else if (probeRequest_.none) {
+        log_->add(MessageKind::Note, "no probes, as asked");
+    } else {
+        log_->add(MessageKind::Note, "no probes: there is no " + probesBeside(shown.path.file).string());
+    }
+    frames_.restart();
+    drawn_.reset();
+}
+
+void Session::loadProbes(const fs::path& file) {
+    probeRequest_ = {.file = file};
+    if (!shown_) return;
+    findProbesOf(*shown_);
+    watchFiles(shown_->loaded.scene);
+}
+
+void Session::dropProbes() {
+    probeRequest_ = {.none = true};
+    probes_.reset();
+    frames_.restart();
+    drawn_.reset();
 }
 
 Result<void> Session::placeCamera(const fs::path& file, const Scene& scene) {
@@ -95,7 +135,9 @@ Result<void> Session::show(OpenPath path, LoadedScene loaded, bool keepCamera) {
     if (shown_ && !keepCamera) rememberCamera();
     const bool sameLight = keepCamera && shown_ && lightingOf(shown_->loaded.scene) == lightingOf(loaded.scene);
     if (!sameLight) lighting = lightingOf(loaded.scene);
+    if (!keepCamera) probes_.reset();
     shown_.emplace(ShownScene{std::move(path), std::move(loaded), std::move(scene)});
+    findProbesOf(*shown_);
     frames_.restart();
     drawn_.reset();
     pick_.reset();
@@ -108,11 +150,11 @@ void Session::update(double secondsSinceStart) {
         Loading done = *std::exchange(loading_, std::nullopt);
         Result<LoadedScene> loaded = done.scene.get();
         const std::string name = done.path.file.string();
+        if (loaded) log_->dismissStrip();  // before: what is wrong with the probes is to stay
         const Result<void> shown =
             loaded ? show(std::move(done.path), *std::move(loaded), done.keepCamera)
                    : Result<void>(tl::make_unexpected(loaded.error()));
         if (shown) {
-            log_->dismissStrip();
             log_->add(MessageKind::Note, "shows " + name);
         } else {
             log_->addError(describe(shown.error()));
@@ -143,6 +185,13 @@ void Session::nextCamera() {
     log_->add(MessageKind::Note, "camera " + (next.name.empty() ? "without a name" : "'" + next.name + "'"));
 }
 
+void Session::setMode(ViewMode wanted) {
+    mode = wanted;
+    if (!shown_) return;
+    const Result<void> fits = checkView(wanted, probes(), shown_->path.file);
+    if (!fits) log_->addError(describe(fits.error()));
+}
+
 void Session::execute(const KeyBinding& binding) {
     switch (binding.command) {
         case Command::FrameAll:
@@ -159,8 +208,7 @@ void Session::execute(const KeyBinding& binding) {
         case Command::NextCamera:
             return nextCamera();
         case Command::ShowView:
-            mode = static_cast<ViewMode>(binding.argument);
-            return;
+            return setMode(static_cast<ViewMode>(binding.argument));
         case Command::Screenshot:
             return writeScreenshot();
         case Command::Reload:
@@ -210,6 +258,8 @@ PictureSettings Session::pictureSettings(glm::uvec2 windowPixels) const {
                             .samplesPerPixel = 1,
                             .mode = mode,
                             .lodPixels = static_cast<float>(settings.lodPixels),
+                            .toneMap = settings.toneMap,
+                            .atlas = atlas,
                             .lighting = lighting};
     picture.lighting.exposure = static_cast<float>(std::exp2(settings.exposureStops));
     return picture;
@@ -227,7 +277,7 @@ Result<void> Session::draw(glm::uvec2 windowPixels) {
     const PictureSettings picture = pictureSettings(windowPixels);
     if (!settings.antiAliasing) frames_.restart();
     PFVOX_TRY(const PictureStatistics, statistics,
-              frames_.draw(*device_, shown_->scene, camera.camera(), picture));
+              frames_.draw(*device_, {shown_->scene, probes()}, camera.camera(), picture));
     statistics_ = statistics;
     drawn_ = {camera.camera(), picture};
     frameTimesMs_.push_back(static_cast<float>(statistics_.gpuMs));

@@ -19,6 +19,7 @@
 #include "open_path.hpp"
 #include "pick.hpp"
 #include "settings.hpp"
+#include "shown_probes.hpp"
 
 namespace pfvox::viewer {
 
@@ -34,6 +35,8 @@ struct SessionStart {
     std::filesystem::path path;
     CameraRequest camera;
     ViewMode mode = ViewMode::Final;
+    ProbeRequest probes = {};  ///< of what is opened first; later files have those beside them
+    AtlasChoice atlas = {};
     std::filesystem::path screenshotFolder = {};  ///< empty = where the program runs
 };
 
@@ -47,6 +50,11 @@ class Session {
     void open(const std::filesystem::path& path);
     /// The same files again.
     void reload();
+    /// Probes from this file for what is shown, at once; on an error the probes so far stay and the strip tells. Empty =
+    /// those beside the scene, if there are any.
+    void loadProbes(const std::filesystem::path& file);
+    /// Light without probes until the next loadProbes() or open().
+    void dropProbes();
     void execute(const KeyBinding& binding);
     /// Tells what is at a point of the picture: parts of its edges from the upper left.
     void pickAt(glm::dvec2 parts);
@@ -62,6 +70,8 @@ class Session {
 
     const FrameSequence& frames() const { return frames_; }
     const ShownScene* shown() const { return shown_ ? &*shown_ : nullptr; }
+    /// Null without probes.
+    const ShownProbes* probes() const { return probes_ ? &*probes_ : nullptr; }
     bool isLoading() const { return loading_.has_value(); }
     bool wantsToQuit() const { return quit_; }
     gpu::Device& device() const { return *device_; }
@@ -76,7 +86,8 @@ class Session {
     CameraController camera;
     Settings settings;
     Lighting lighting;  ///< without the exposure, which is in `settings`
-    ViewMode mode = ViewMode::Final;
+    ViewMode mode = ViewMode::Final;  ///< one that checkView refuses shows the final picture instead
+    AtlasChoice atlas;                ///< which probes the atlas views show
     bool showHelp = false;
 
   private:
@@ -88,6 +99,9 @@ class Session {
     Session(gpu::Device& device, FrameSequence frames, gpu::RayQuery query, MessageLog& log)
         : device_(&device), log_(&log), frames_(std::move(frames)), query_(std::move(query)) {}
     void load(OpenPath path, bool keepCamera);
+    void findProbesOf(const ShownScene& shown);
+    void watchFiles(const Scene& scene);
+    void setMode(ViewMode wanted);
     Result<void> show(OpenPath path, LoadedScene loaded, bool keepCamera);
     Result<void> placeCamera(const std::filesystem::path& file, const Scene& scene);
     void rememberCamera();
@@ -104,6 +118,8 @@ class Session {
     SessionStart start_;
     OpenPath wanted_;  ///< what was opened last, whether or not it could be
     std::optional<ShownScene> shown_;
+    std::optional<ShownProbes> probes_;
+    ProbeRequest probeRequest_;
     std::optional<Loading> loading_;
     FileWatch watch_;
     double nextPoll_ = 0.0;

@@ -59,6 +59,13 @@ class Reader {
             complain(key, 0.0);
         }
     }
+    void toneMap(const char* key, ToneMap& value) const {
+        const auto node = table_[key];
+        if (!node) return;
+        const std::optional<ToneMap> found = toneMapFrom(node.value_or(std::string()));
+        if (found) value = *found;
+        if (!found) complain(key, 0.0);
+    }
 
   private:
     double complain(const char* key, double kept) const {
@@ -120,17 +127,18 @@ Result<Settings> parseSettings(std::string_view text, Diagnostics& diagnostics) 
     reader.flag("antiAliasing", settings.antiAliasing);
     reader.number("renderScale", 0.25, 1.0, settings.renderScale);
     reader.number("lodPixels", 0.0, 16.0, settings.lodPixels);
-    reader.number("exposureStops", -8.0, 8.0, settings.exposureStops);
+    reader.number("exposureStops", -16.0, 16.0, settings.exposureStops);
+    reader.toneMap("toneMap", settings.toneMap);
     return settings;
 }
 
 std::string settingsText(const Settings& settings) {
     return fmt::format(
         "windowWidth = {}\nwindowHeight = {}\ncameraMode = '{}'\nshowWindows = {}\nantiAliasing = {}\n"
-        "renderScale = {:.6f}\nlodPixels = {:.6f}\nexposureStops = {:.6f}\n",
+        "renderScale = {:.6f}\nlodPixels = {:.6f}\nexposureStops = {:.6f}\ntoneMap = '{}'\n",
         settings.windowWidth, settings.windowHeight, settings.cameraMode == CameraMode::Fly ? "fly" : "orbit",
         settings.showWindows, settings.antiAliasing, settings.renderScale, settings.lodPixels,
-        settings.exposureStops);
+        settings.exposureStops, toString(settings.toneMap));
 }
 
 Result<CameraMemory> parseCameras(std::string_view text) {

@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "camera_controller.hpp"
+#include "view_modes.hpp"
 
 namespace pfvox::viewer {
 
@@ -22,7 +23,8 @@ struct Settings {
     bool antiAliasing = true;   ///< temporal: frames become one picture
     double renderScale = 1.0;   ///< pixels computed for each pixel of the window, along an edge: 0.25 to 1
     double lodPixels = 1.0;     ///< PictureSettings::lodPixels, 0 to 16
-    double exposureStops = 0.0; ///< -8 to 8
+    double exposureStops = 0.0; ///< -16 to 16
+    ToneMap toneMap = ToneMap::Standard;
     bool operator==(const Settings&) const = default;
 };
 

@@ -166,6 +166,8 @@ class Device {
     /// Launches the programs one after the other, each seeing what those before wrote, and waits. Returns the
     /// time that the device spent, in milliseconds; 0 where it has no time stamps.
     Result<double> run(std::span<const Dispatch> dispatches);
+    /// The same, and what each of them took, in milliseconds.
+    Result<std::vector<double>> runTimed(std::span<const Dispatch> dispatches);
 
     /// What the validation layer has said so far, each message once an occurrence. Empty is how it should be.
     std::vector<std::string> validationMessages() const;

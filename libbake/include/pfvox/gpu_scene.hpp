@@ -45,6 +45,8 @@ struct SceneStatistics {
     std::uint64_t valueBytes = 0;     ///< materials of single voxels
     std::uint64_t paletteBytes = 0;   ///< regions' palettes
     std::uint64_t instanceBytes = 0;  ///< instances, models, materials, BVH
+    bool hasGlass = false;    ///< materials that let light through
+    bool hasMirrors = false;  ///< materials that mirror: metal and plastic
     double buildMs = 0.0;             ///< CPU time of layout, BVH and upload
     std::uint64_t totalBytes() const {
         return nodeBytes + lodBytes + valueBytes + paletteBytes + instanceBytes;

@@ -145,35 +145,48 @@ Result<Program> Device::createProgram(std::span<const std::uint32_t> spirv, std:
     });
 }
 
+namespace {
+
+void record(const vk::raii::CommandBuffer& commands, const detail::ProgramState& program, const Dispatch& dispatch) {
+    PFVOX_ASSERT(dispatch.pushConstants.size() == program.pushConstantBytes);
+    commands.bindPipeline(vk::PipelineBindPoint::eCompute, *program.pipeline);
+    commands.pushConstants<std::byte>(
+        *program.layout, vk::ShaderStageFlagBits::eCompute, 0,
+        {static_cast<std::uint32_t>(dispatch.pushConstants.size()), dispatch.pushConstants.data()});
+    if (dispatch.groupsFrom != nullptr) {
+        PFVOX_ASSERT(dispatch.groupsAtBytes % 4 == 0);
+        PFVOX_ASSERT(dispatch.groupsAtBytes + 12 <= dispatch.groupsFrom->sizeBytes());
+        commands.dispatchIndirect(nativeOf(*dispatch.groupsFrom), dispatch.groupsAtBytes);
+    } else {
+        commands.dispatch(dispatch.groups.x, dispatch.groups.y, dispatch.groups.z);
+    }
+    const vk::MemoryBarrier written{
+        .srcAccessMask = vk::AccessFlagBits::eShaderWrite,
+        .dstAccessMask = vk::AccessFlagBits::eShaderRead | vk::AccessFlagBits::eShaderWrite |
+                         vk::AccessFlagBits::eIndirectCommandRead | vk::AccessFlagBits::eTransferRead |
+                         vk::AccessFlagBits::eTransferWrite};
+    commands.pipelineBarrier(vk::PipelineStageFlagBits::eComputeShader,
+                             vk::PipelineStageFlagBits::eComputeShader | vk::PipelineStageFlagBits::eDrawIndirect |
+                                 vk::PipelineStageFlagBits::eTransfer,
+                             {}, written, nullptr, nullptr);
+}
+
+}  // namespace
+
 Result<double> Device::run(std::span<const Dispatch> dispatches) {
     return guarded("run", [&] {
         return context_->submit([&](const vk::raii::CommandBuffer& commands) {
-            for (const Dispatch& dispatch : dispatches) {
-                const detail::ProgramState& program = *dispatch.program->state_;
-                PFVOX_ASSERT(dispatch.pushConstants.size() == program.pushConstantBytes);
-                commands.bindPipeline(vk::PipelineBindPoint::eCompute, *program.pipeline);
-                commands.pushConstants<std::byte>(*program.layout, vk::ShaderStageFlagBits::eCompute, 0,
-                                                  {static_cast<std::uint32_t>(dispatch.pushConstants.size()),
-                                                   dispatch.pushConstants.data()});
-                if (dispatch.groupsFrom != nullptr) {
-                    PFVOX_ASSERT(dispatch.groupsAtBytes % 4 == 0);
-                    PFVOX_ASSERT(dispatch.groupsAtBytes + 12 <= dispatch.groupsFrom->sizeBytes());
-                    commands.dispatchIndirect(*dispatch.groupsFrom->state_->allocation.buffer, dispatch.groupsAtBytes);
-                } else {
-                    commands.dispatch(dispatch.groups.x, dispatch.groups.y, dispatch.groups.z);
-                }
-                const vk::MemoryBarrier written{
-                    .srcAccessMask = vk::AccessFlagBits::eShaderWrite,
-                    .dstAccessMask = vk::AccessFlagBits::eShaderRead | vk::AccessFlagBits::eShaderWrite |
-                                     vk::AccessFlagBits::eIndirectCommandRead |
-                                     vk::AccessFlagBits::eTransferRead | vk::AccessFlagBits::eTransferWrite};
-                commands.pipelineBarrier(vk::PipelineStageFlagBits::eComputeShader,
-                                         vk::PipelineStageFlagBits::eComputeShader |
-                                             vk::PipelineStageFlagBits::eDrawIndirect |
-                                             vk::PipelineStageFlagBits::eTransfer,
-                                         {}, written, nullptr, nullptr);
-            }
+            for (const Dispatch& dispatch : dispatches) record(commands, *dispatch.program->state_, dispatch);
         });
+    });
+}
+
+Result<std::vector<double>> Device::runTimed(std::span<const Dispatch> dispatches) {
+    return guarded("run", [&] {
+        return context_->submitTimed(static_cast<std::uint32_t>(dispatches.size()),
+                                     [&](const vk::raii::CommandBuffer& commands, std::uint32_t piece) {
+                                         record(commands, *dispatches[piece].program->state_, dispatches[piece]);
+                                     });
     });
 }
 

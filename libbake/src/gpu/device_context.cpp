@@ -218,8 +218,41 @@ double DeviceContext::elapsedMs() const {
     const auto [result, ticks] = timeStamps_.getResults<std::uint64_t>(
         0, 2, 2 * sizeof(std::uint64_t), sizeof(std::uint64_t), vk::QueryResultFlagBits::e64);
     if (result != vk::Result::eSuccess) return 0.0;
+    return msBetween(ticks[0], ticks[1]);
+}
+
+double DeviceContext::msBetween(std::uint64_t first, std::uint64_t last) const {
     const std::uint64_t mask = timeStampBits_ >= 64 ? kMaxU64 : (std::uint64_t{1} << timeStampBits_) - 1;
-    return static_cast<double>((ticks[1] - ticks[0]) & mask) * timeStampNs_ * 1e-6;
+    return static_cast<double>((last - first) & mask) * timeStampNs_ * 1e-6;
+}
+
+std::vector<double> DeviceContext::submitTimed(
+    std::uint32_t pieces, const std::function<void(const vk::raii::CommandBuffer&, std::uint32_t)>& record) {
+    const bool timed = timeStampNs_ > 0.0;
+    if (timed && pieceStampCount_ <= pieces) {
+        pieceStampCount_ = pieces + 1;
+        pieceStamps_ = vk::raii::QueryPool(
+            device_, {.queryType = vk::QueryType::eTimestamp, .queryCount = pieceStampCount_});
+    }
+    submit([&](const vk::raii::CommandBuffer& commands) {
+        const auto stamp = [&](std::uint32_t query) {
+            if (timed) commands.writeTimestamp(vk::PipelineStageFlagBits::eBottomOfPipe, *pieceStamps_, query);
+        };
+        if (timed) commands.resetQueryPool(*pieceStamps_, 0, pieces + 1);
+        stamp(0);
+        for (std::uint32_t piece = 0; piece < pieces; ++piece) {
+            record(commands, piece);
+            stamp(piece + 1);
+        }
+    });
+    std::vector<double> times(pieces, 0.0);
+    if (!timed) return times;
+    const std::size_t bytes = (pieces + 1) * sizeof(std::uint64_t);
+    const auto [result, ticks] = pieceStamps_.getResults<std::uint64_t>(
+        0, pieces + 1, bytes, sizeof(std::uint64_t), vk::QueryResultFlagBits::e64);
+    if (result != vk::Result::eSuccess) return times;
+    for (std::uint32_t piece = 0; piece < pieces; ++piece) times[piece] = msBetween(ticks[piece], ticks[piece + 1]);
+    return times;
 }
 
 void DeviceContext::flush() {

@@ -57,6 +57,9 @@ class DeviceContext {
     void nameObject(vk::ObjectType type, std::uint64_t handle, const std::string& name) const;
     /// Records commands, submits them and waits. Returns the milliseconds between the first and the last.
     double submit(const std::function<void(const vk::raii::CommandBuffer&)>& record);
+    /// Calls `record` for each piece. Returns the milliseconds of each; zeros where the queue has no time stamps.
+    std::vector<double> submitTimed(std::uint32_t pieces,
+                                    const std::function<void(const vk::raii::CommandBuffer&, std::uint32_t)>& record);
 
     std::span<std::byte> stage(vk::Buffer target, std::uint64_t offsetBytes, std::uint64_t sizeBytes) {
         return staging_.stage(target, offsetBytes, sizeBytes);
@@ -74,6 +77,7 @@ class DeviceContext {
     void wait(std::uint64_t submission) const;
     std::uint32_t memoryType(std::uint32_t allowed, MemoryKind kind) const;
     double elapsedMs() const;
+    double msBetween(std::uint64_t first, std::uint64_t last) const;
 
     Instance instance_;
     FoundDevice found_;
@@ -83,6 +87,8 @@ class DeviceContext {
     vk::raii::CommandBuffer commands_{nullptr};
     vk::raii::Semaphore timeline_{nullptr};
     vk::raii::QueryPool timeStamps_{nullptr};
+    vk::raii::QueryPool pieceStamps_{nullptr};
+    std::uint32_t pieceStampCount_ = 0;
     std::uint64_t submissions_ = 0;
     std::uint64_t maxBufferBytes_ = 0;
     std::uint64_t mostMemoryBytes_ = ~std::uint64_t{0};

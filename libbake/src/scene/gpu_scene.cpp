@@ -71,6 +71,18 @@ std::uint64_t paddedBytes(const std::vector<T>& items) {
     return (items.size() * sizeof(T) + 63) / 64 * 64;
 }
 
+/// As shaders/material.glsl says.
+bool letsThrough(const shared::MaterialRecord& material) {
+    const auto type = static_cast<MaterialType>(material.type);
+    const bool glass = type == MaterialType::Glass || type == MaterialType::Media || type == MaterialType::Blend;
+    return glass && material.transparency > 0.0f && material.emissionStrength == 0.0f;
+}
+bool mirrors(const shared::MaterialRecord& material) {
+    const auto type = static_cast<MaterialType>(material.type);
+    const bool metal = type == MaterialType::Metal && material.metalness > 0.0f;
+    return (metal || type == MaterialType::Plastic) && material.emissionStrength == 0.0f;
+}
+
 /// Header, BVH, instances, models and materials, one after the other in one buffer.
 Result<Buffer> uploadTable(Device& device, const SceneRecords& records,
                            const std::vector<shared::ModelRecord>& models) {
@@ -131,6 +143,10 @@ Result<Scene> Scene::build(Device& device, std::span<const ScenePart> parts, Dia
     statistics.models = static_cast<std::uint32_t>(models.size());
     statistics.instances = static_cast<std::uint32_t>(records.instances.size());
     statistics.materials = static_cast<std::uint32_t>(records.materials.size());
+    for (const shared::MaterialRecord& material : records.materials) {
+        statistics.hasGlass = statistics.hasGlass || letsThrough(material);
+        statistics.hasMirrors = statistics.hasMirrors || mirrors(material);
+    }
     statistics.bvhNodes = static_cast<std::uint32_t>(records.bvhNodes.size());
     statistics.instanceBytes = table.sizeBytes();
     const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - started;

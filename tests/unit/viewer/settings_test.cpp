@@ -18,7 +18,8 @@ const Settings kUnusual{.windowWidth = 801,
                         .antiAliasing = false,
                         .renderScale = 0.5,
                         .lodPixels = 2.25,
-                        .exposureStops = -1.5};
+                        .exposureStops = -1.5,
+                        .toneMap = ToneMap::Aces};
 const ViewCamera kCamera{.position = {1.1, -2.5, 1e6}, .target = {0.1, 0.2, 0.3}, .fovYDegrees = 47.3};
 
 TEST(Settings, TextIsReadBack) {
@@ -42,13 +43,13 @@ TEST(Settings, WrongValuesBecomeDefaultsAndAreTold) {
     DiagnosticList diagnostics;
     const Result<Settings> read = parseSettings(
         "windowWidth = 3\nwindowHeight = 'tall'\ncameraMode = 'walk'\nshowWindows = 7\nrenderScale = nan\n"
-        "lodPixels = -1\nexposureStops = inf\nantiAliasing = false\n",
+        "lodPixels = -1\nexposureStops = inf\ntoneMap = 'film'\nantiAliasing = false\n",
         diagnostics);
     ASSERT_TRUE(read);
     Settings expected;
     expected.antiAliasing = false;
     EXPECT_EQ(*read, expected);
-    EXPECT_EQ(diagnostics.entries().size(), 7u);
+    EXPECT_EQ(diagnostics.entries().size(), 8u);
     for (const Diagnostic& diagnostic : diagnostics.entries()) EXPECT_EQ(diagnostic.id, "settings-bad-value");
 }
 

@@ -92,14 +92,20 @@ Result<void> saidNothing(const gpu::Device& device, Diagnostics& diagnostics) {
 Result<void> runWindow(const Options& options, Diagnostics& diagnostics) {
     const UserFolders folders =
         userFolders(std::getenv("XDG_CONFIG_HOME"), std::getenv("XDG_STATE_HOME"), std::getenv("HOME"));
-    const Memory memory = loadMemory(folders, diagnostics);
+    Memory memory = loadMemory(folders, diagnostics);
+    memory.settings.exposureStops = options.exposureStops.value_or(memory.settings.exposureStops);
+    memory.settings.toneMap = options.toneMap.value_or(memory.settings.toneMap);
     PFVOX_TRY(const std::unique_ptr<GlfwLibrary>, glfw, GlfwLibrary::start());
     gpu::DeviceOptions deviceOptions{.selector = options.device, .validation = options.validation};
     glfw->require(deviceOptions);
     PFVOX_TRY(gpu::Device, device, gpu::Device::open(deviceOptions));
 
     MessageLog log;
-    const SessionStart start{.path = options.file, .camera = options.camera, .mode = options.picture.mode};
+    const SessionStart start{.path = options.file,
+                             .camera = options.camera,
+                             .mode = options.picture.mode,
+                             .probes = options.probes,
+                             .atlas = options.picture.atlas};
     PFVOX_TRY(const std::unique_ptr<Session>, session, Session::create(device, start, memory, log));
     Interaction interaction(session->camera);
     const glm::uvec2 size = options.sizeGiven ? glm::uvec2(options.picture.width, options.picture.height)

@@ -1,0 +1,120 @@
+// What all programs of a picture share: parameters, camera rays, what earlier passes left, sums for statistics.
+#ifndef PFVOX_VIEW_FRAME_GLSL
+#define PFVOX_VIEW_FRAME_GLSL
+
+#include "shared/view.glsl.h"
+#include "shared/probe_maths.glsl.h"
+#define PFVOX_TRACE_GROUP_SIZE (kViewGroupEdge * kViewGroupEdge)
+#define PFVOX_TRACE_LOD
+#include "bake_rays.glsl"
+#include "view_encoding.glsl"
+#include "view_tone_map.glsl"
+
+layout(local_size_x = kViewGroupEdge, local_size_y = kViewGroupEdge) in;
+
+layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer Parameters { ViewParameters view; };
+layout(buffer_reference, std430, buffer_reference_align = 16) buffer Colours { vec4 at[]; };
+layout(buffer_reference, std430, buffer_reference_align = 8) buffer Counts { uvec2 at[]; };
+layout(buffer_reference, std430, buffer_reference_align = 16) buffer SeenPixels { SeenPixel at[]; };
+layout(buffer_reference, std430, buffer_reference_align = 16) buffer SeenShines { SeenShine at[]; };
+layout(push_constant) uniform Push { ViewPushConstants push; };
+
+// ---- Pixels and camera rays ----
+
+struct Pixel {
+    uvec2 at;     // in the picture
+    uint index;   // in the buffers
+    bool inside;
+};
+
+Pixel pixelOf(ViewParameters view) {
+    uvec2 within = gl_GlobalInvocationID.xy;
+    return Pixel(within + uvec2(0u, push.firstRow), within.y * view.width + within.x,
+                 within.x < view.width && within.y < push.rowCount);
+}
+
+// Samples spread evenly over the pixel: the additive recurrence with the plastic number (Roberts 2018). The first lies
+// in the middle.
+vec2 samplePosition(uint index) { return fract(vec2(0.5) + float(index) * vec2(0.7548776662, 0.5698402910)); }
+
+uint sampleNumber(ViewParameters view) { return view.firstSample + push.sampleIndex; }
+
+Ray cameraRay(ViewParameters view, uvec2 pixel) {
+    vec2 within = samplePosition(sampleNumber(view));
+    vec2 plane = 2.0 * (vec2(pixel) + within) / vec2(view.width, view.height) - 1.0;
+    vec3 direction = view.cameraForward + plane.x * view.cameraRight - plane.y * view.cameraUp;
+    return Ray(view.cameraPosition, kInfinity, normalize(direction), view.cone);
+}
+
+vec3 skyRadiance(ViewParameters view, vec3 direction) {
+    return skyAlong(SkyColours(view.skyZenith, view.skyHorizon, view.skyGround), direction);
+}
+
+// ---- What is handed from pass to pass ----
+
+uint packWideNormal(vec3 normal) { return packSnorm2x16(octEncode(normal)); }
+vec3 unpackWideNormal(uint word) { return octDecode(unpackSnorm2x16(word)); }
+
+// A point on a surface as passes hand it on.
+struct SurfacePart {
+    vec3 position;
+    vec3 normal;
+    float offset;  // of rays that start there
+    MaterialRecord material;
+    vec3 albedo;
+};
+
+float startOffset(float voxelMetres, vec3 position) {
+    return max(kRayOffsetVoxels * voxelMetres, 4e-7 * maxOf(abs(position)));
+}
+
+SurfacePart partOf(Scene scene, SeenPixel seen, Ray ray) {
+    SurfacePart part;
+    part.position = ray.origin + seen.distance * ray.direction;
+    part.normal = unpackWideNormal(seen.normal);
+    part.offset = startOffset(seen.voxelMetres, part.position);
+    part.material = Materials(scene.header.materials).at[seen.material];
+    part.albedo = seen.lodColor != 0u ? linearFromSrgb(unpackUnorm4x8(seen.lodColor).rgb) : part.material.albedo;
+    return part;
+}
+
+SurfacePart partOf(Scene scene, Surface surface) {
+    return SurfacePart(surface.position, surface.normal, rayOffset(surface), materialOf(scene, surface),
+                       albedoOf(scene, surface));
+}
+
+// The colour of one sample, for the screen but for its encoding; `distance` is that of the nearest sample in the end.
+void writeColour(ViewParameters view, uint index, vec3 colour, float distance) {
+    vec4 before = push.sampleIndex == 0u ? vec4(vec3(0.0), kInfinity) : Colours(push.colours).at[index];
+    Colours(push.colours).at[index] =
+        vec4(before.rgb + colour / float(view.samplesPerPixel), min(before.w, distance));
+}
+
+// Of a colour that is meant for the screen as it is: the encoding at the end is taken back.
+vec3 linearFromDisplay(vec3 c) { return pow(c, vec3(2.2)); }
+
+// ---- Sums: a group adds up, then to memory ----
+
+shared uint groupCounts[kViewCounterCount];
+
+void beginCounting() {
+    if (gl_LocalInvocationIndex < kViewCounterCount) groupCounts[gl_LocalInvocationIndex] = 0u;
+    barrier();
+}
+void count(uint what, uint amount) {
+    if (amount != 0u) atomicAdd(groupCounts[what], amount);
+}
+void count(TraceStatistics statistics) {
+    count(kCountSteps, statistics.steps);
+    count(kCountCapped, statistics.capped);
+}
+void endCounting() {
+    barrier();
+    if (gl_LocalInvocationIndex >= kViewCounterCount) return;
+    uint amount = groupCounts[gl_LocalInvocationIndex];
+    if (amount == 0u) return;
+    uint before = atomicAdd(Counts(push.counters).at[gl_LocalInvocationIndex].x, amount);
+    if (before + amount < before) atomicAdd(Counts(push.counters).at[gl_LocalInvocationIndex].y, 1u);
+}
+
+#endif

@@ -1,0 +1,104 @@
+// What mirrors and glass add to each pixel: one reflected ray of the surface, one of the first glass in front, and the
+// light that such glass scatters. At the end of a ray there is direct sun, indirect light and emission, no further mirror.
+// Rough mirrors scatter their rays from frame to frame; the frames' mean is what they show.
+#include "view_lighting.glsl"
+#include "view_colours.glsl"
+
+const float kMirrorAlpha = 1e-3;  // sharper lobes reflect like mirrors
+
+vec3 radianceAlong(ViewParameters view, Scene scene, Ray ray, inout RayCounts counts) {
+    vec3 through = vec3(1.0);
+    uint lastGlass = kNoMaterial;
+    for (uint i = 0u; i < kMaxGlassSteps; ++i) {
+        Hit hit = castRay(scene, ray, counts);
+        if (hit.instance == kNoInstance) return through * skyRadiance(view, ray.direction);
+        Surface surface = surfaceOf(scene, ray, hit);
+        MaterialRecord material = materialOf(scene, surface);
+        if (kHasGlass == 0u || !letsThrough(material)) {
+            SurfacePart part = partOf(scene, surface);
+            if (part.material.type == kMaterialMetal) part.material.type = 0u;  // what it mirrors is about as bright
+            vec3 sun = sunShare(view, scene, part, counts);
+            vec3 indirect = indirectAt(view, part.position, part.normal).indirect;
+            return through * radianceFrom(view, part, -ray.direction, sun, indirect);
+        }
+        if (entersGlass(surface, lastGlass))
+            through *= (1.0 - glassReflectance(material, abs(dot(surface.normal, ray.direction)))) * glassTint(material);
+        lastGlass = surface.material;
+        ray = behindGlass(scene, ray, hit, surface);
+    }
+    return vec3(0.0);
+}
+
+// The lobe's own direction for this pixel and frame, and how much of what comes from there is reflected.
+vec3 mirrored(Lobes lobes, float roughness, vec3 normal, vec3 toViewer, vec2 u, out vec3 weight) {
+    float alpha = roughness * roughness;
+    vec3 half_ = normal;
+    if (alpha > kMirrorAlpha) {
+        vec3 tangent, bitangent;
+        frameAbout(normal, tangent, bitangent);
+        vec3 local = vec3(dot(toViewer, tangent), dot(toViewer, bitangent), dot(toViewer, normal));
+        vec3 m = visibleNormal(local, alpha, u);
+        half_ = m.x * tangent + m.y * bitangent + m.z * normal;
+    }
+    vec3 direction = reflect(-toViewer, half_);
+    float cosine = dot(direction, normal);
+    vec3 fresnel = mix(lobes.specular0, vec3(1.0), schlickWeight(dot(toViewer, half_)));
+    float shadow = alpha > kMirrorAlpha ? ggxShadow(max(cosine, 0.0), alpha) : 1.0;
+    weight = cosine > 0.0 ? lobes.specular * fresnel * shadow : vec3(0.0);
+    return direction;
+}
+
+vec2 pixelNoise(ViewParameters view, uvec2 pixel) {
+    uint seed = hash(pixel.x + (pixel.y << 16));
+    vec2 start = vec2(seed & 0xffffu, seed >> 16) / 65536.0;
+    return fract(start + float(sampleNumber(view)) * vec2(0.7548776662, 0.5698402910));
+}
+
+vec3 surfaceShine(ViewParameters view, Scene scene, Ray ray, SeenPixel seen, vec2 u, inout RayCounts counts) {
+    SurfacePart part = partOf(scene, seen, ray);
+    Lobes lobes = lobesOf(part.material, part.albedo, part.normal, -ray.direction);
+    if (lobes.specular <= 0.0) return vec3(0.0);
+    vec3 weight;
+    vec3 direction = mirrored(lobes, part.material.roughness, part.normal, -ray.direction, u, weight);
+    if (maxOf(weight) < 1e-3) return vec3(0.0);
+    Ray away = Ray(part.position + part.offset * part.normal, kInfinity, direction, 0.0);
+    return unpackLight(seen.through) * weight * radianceAlong(view, scene, away, counts);
+}
+
+vec3 glassShine(ViewParameters view, Scene scene, Ray ray, SeenShine shine, inout RayCounts counts) {
+    SeenPixel glass = SeenPixel(shine.distance, shine.material, shine.normal, 0u, shine.voxelMetres, 0u, 0u, 0u);
+    SurfacePart part = partOf(scene, glass, ray);
+    float reflectance = glassReflectance(part.material, abs(dot(part.normal, ray.direction)));
+    vec3 radiance = vec3(0.0);
+    if (reflectance > 1e-3) {
+        Ray away = Ray(part.position + part.offset * part.normal, kInfinity, reflect(ray.direction, part.normal), 0.0);
+        radiance += reflectance * radianceAlong(view, scene, away, counts);
+    }
+    if (part.material.transparency < 1.0) {
+        vec3 sun = sunShare(view, scene, part, counts);
+        vec3 indirect = indirectAt(view, part.position, part.normal).indirect;
+        radiance += (1.0 - reflectance) * radianceFrom(view, part, -ray.direction, sun, indirect);
+    }
+    return radiance;
+}
+
+void main() {
+    ViewParameters view = Parameters(push.parameters).view;
+    Pixel pixel = pixelOf(view);
+    beginCounting();
+    if (pixel.inside) {
+        Scene scene = Scene(push.scene);
+        Ray ray = cameraRay(view, pixel.at);
+        SeenPixel seen = SeenPixels(push.seen).at[pixel.index];
+        SeenShine shine = SeenShines(push.shine).at[pixel.index];
+        RayCounts counts = RayCounts(0u, TraceStatistics(0u, 0u));
+        vec3 added = vec3(0.0);
+        if (seen.distance < kInfinity)
+            added += surfaceShine(view, scene, ray, seen, pixelNoise(view, pixel.at), counts);
+        if (kHasGlass != 0u && shine.distance < kInfinity) added += glassShine(view, scene, ray, shine, counts);
+        SeenShines(push.shine).at[pixel.index].added = added;
+        count(counts.trace);
+        count(kCountReflectionRays, counts.rays);
+    }
+    endCounting();
+}
