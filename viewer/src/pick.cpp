@@ -39,7 +39,8 @@ std::optional<Pick> describePick(const LoadedScene& scene, const gpu::GpuRay& ra
             if (material >= asset.materials.size()) return std::nullopt;
             const SceneModel& model = scene.scene.models[part.model];
             const Material& m = asset.materials[material];
-            return Pick{.model = model.name.empty() ? model.path : model.name,
+            return Pick{.modelIndex = part.model,
+                        .model = model.name.empty() ? model.path : model.name,
                         .instance = numbered(instance, asset.instances[instance].name),
                         .material = numbered(material, m.name) + ", " + toString(m.type),
                         .baseColor = m.baseColor,

@@ -14,6 +14,7 @@ namespace pfvox::viewer {
 gpu::GpuRay rayThrough(const ViewCamera& camera, glm::dvec2 parts, double aspect);
 
 struct Pick {
+    std::size_t modelIndex = 0;  ///< in Scene::models
     std::string model;     ///< name, else path, of the scene's model
     std::string instance;  ///< its number within the file, and its name if it has one
     std::string material;  ///< its number within the file, its name if it has one, and its type
