@@ -99,9 +99,9 @@ const KeyBinding* bindingOf(Key key, bool control, bool shift) {
     return found;
 }
 
-const KeyBinding* bindingOf(Command command, int argument) {
+const KeyBinding* bindingOf(Command command, std::optional<int> argument) {
     for (const KeyBinding& binding : keyBindings()) {
-        if (binding.command == command && binding.argument == argument) return &binding;
+        if (binding.command == command && (!argument || binding.argument == *argument)) return &binding;
     }
     return nullptr;
 }

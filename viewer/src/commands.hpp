@@ -75,8 +75,8 @@ struct KeyBinding {
 std::span<const KeyBinding> keyBindings();
 /// Shift is ignored where no binding asks for it.
 const KeyBinding* bindingOf(Key key, bool control, bool shift = false);
-/// The first binding of a command with this argument; null = it has no key.
-const KeyBinding* bindingOf(Command command, int argument = 0);
+/// The first binding of a command (with this argument); null = it has no key.
+const KeyBinding* bindingOf(Command command, std::optional<int> argument = {});
 
 /// What the mouse and the keys that are held do, beside keyBindings().
 struct HeldBinding {

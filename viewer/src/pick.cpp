@@ -53,4 +53,9 @@ std::optional<Pick> describePick(const LoadedScene& scene, const gpu::GpuRay& ra
     return std::nullopt;
 }
 
+std::uint32_t nearestProbe(const ProbeGrid& grid, const glm::dvec3& point) {
+    const glm::dvec3 steps = glm::round((point - glm::dvec3(grid.start)) / glm::dvec3(grid.step));
+    return grid.indexOf(glm::uvec3(glm::clamp(steps, glm::dvec3(0.0), glm::dvec3(grid.counts) - 1.0)));
+}
+
 }  // namespace pfvox::viewer

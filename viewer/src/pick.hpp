@@ -27,4 +27,7 @@ struct Pick {
 /// What a hit means in the scene's own words; nothing for a miss.
 std::optional<Pick> describePick(const LoadedScene& scene, const gpu::GpuRay& ray, const gpu::GpuHit& hit);
 
+/// Index of the grid's probe that stands nearest to a point, as the grid has it.
+std::uint32_t nearestProbe(const ProbeGrid& grid, const glm::dvec3& point);
+
 }  // namespace pfvox::viewer

@@ -145,7 +145,8 @@ Result<void> Session::show(OpenPath path, LoadedScene loaded, bool keepCamera) {
     const bool sameLight = keepCamera && shown_ && lightingOf(shown_->loaded.scene) == lightingOf(loaded.scene);
     if (!sameLight) lighting = lightingOf(loaded.scene);
     if (!keepCamera) probes_.reset();
-    shown_.emplace(ShownScene{std::move(path), std::move(loaded), std::move(scene)});
+    std::vector<WorldBounds> boxes = assetBoxesOf(loaded);
+    shown_.emplace(ShownScene{std::move(path), std::move(loaded), std::move(scene), std::move(boxes)});
     composer.begin(shown_->path.file, shown_->loaded);
     selectedProbe.reset();
     findProbesOf(*shown_);

@@ -31,6 +31,7 @@ struct ShownScene {
     OpenPath path;
     LoadedScene loaded;
     gpu::Scene scene;
+    std::vector<WorldBounds> assetBoxes = {};  ///< of each of loaded.parts, in the metres of its file
 };
 
 /// What the command line asks for.
@@ -80,6 +81,8 @@ class Session {
     /// At the selected model; nothing when none that is seen is selected.
     std::optional<Gizmo> gizmo() const;
     void frameSelected();
+    /// The present view becomes a camera of the scene.
+    void addCamera();
     /// Where a probe of the shown scene's grid stands, or will: of a baked field of the same grid it is the place after
     /// relocation. Precondition: shown() and an index of its grid.
     glm::dvec3 placeOfProbe(std::uint32_t index) const;

@@ -128,6 +128,7 @@ Result<void> Session::rearrange(LoadedScene loaded) {
     }
     lighting = lightingOf(loaded.scene);
     if (loaded.probes.counts != shown_->loaded.probes.counts) selectedProbe.reset();
+    shown_->assetBoxes = assetBoxesOf(loaded);
     shown_->loaded = std::move(loaded);
     if (otherFiles) watchFiles(shown_->loaded.scene);
     if (wasEmpty) frameAll();
@@ -194,6 +195,17 @@ void Session::frameSelected() {
     if (!shown_ || !composer.editor.selected()) return frameAll();
     const WorldBounds box = boundsOfModel(shown_->loaded, *composer.editor.selected());
     box.empty() ? frameAll() : camera.frame(worldBoxOf(box), aspect());
+}
+
+void Session::addCamera() {
+    if (!shown_) return;
+    const ViewCamera& view = camera.camera();
+    std::vector<Camera> cameras = composer.editor.scene().cameras;
+    cameras.push_back({.name = "view " + std::to_string(cameras.size() + 1),
+                       .position = view.position,
+                       .target = view.target,
+                       .fovYDegrees = view.fovYDegrees});
+    composer.tell(composer.editor.setCameras(std::move(cameras)));
 }
 
 // ---- Commands --------------------------------------------------------------------------------------------

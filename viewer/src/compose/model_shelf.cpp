@@ -61,6 +61,17 @@ Result<LoadedScene> arranged(const SceneEditor& editor, const ModelShelf& shelf,
     return loaded;
 }
 
+std::vector<WorldBounds> assetBoxesOf(const LoadedScene& scene) {
+    std::map<const OctreeAsset*, WorldBounds> known;
+    std::vector<WorldBounds> boxes;
+    for (const PlacedAsset& part : scene.parts) {
+        const auto [entry, isNew] = known.try_emplace(part.asset.get());
+        if (isNew) entry->second = boundsOf(*part.asset);
+        boxes.push_back(entry->second);
+    }
+    return boxes;
+}
+
 WorldBounds boundsOfModel(const LoadedScene& scene, std::size_t model) {
     for (const PlacedAsset& part : scene.parts) {
         if (part.model == model) return boundsOf(*part.asset, part.worldFromAsset);

@@ -33,6 +33,9 @@ std::vector<std::filesystem::path> missingModels(const SceneEditor& editor, cons
 /// (instances, probes of the grid).
 Result<LoadedScene> arranged(const SceneEditor& editor, const ModelShelf& shelf, Diagnostics& diagnostics);
 
+/// Boxes of the parts in the metres of their files, each file looked at once.
+std::vector<WorldBounds> assetBoxesOf(const LoadedScene& scene);
+
 /// Box of one model of the scene; empty when it is hidden or not loaded.
 WorldBounds boundsOfModel(const LoadedScene& scene, std::size_t model);
 

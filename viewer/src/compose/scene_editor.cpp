@@ -200,11 +200,12 @@ Result<void> SceneEditor::saveAs(const fs::path& file) {
         return fs::path(path).is_absolute() ? path : pathFrom(folder, folder_ / fs::path(path));
     };
     Scene scene = scene_;
-    if (absolutePath(folder / ".") != absolutePath(folder_ / ".")) {
+    const bool moves = absolutePath(folder / ".") != absolutePath(folder_ / ".");
+    if (moves) {
         for (SceneModel& model : scene.models) model.path = rebased(model.path);
     }
     PFVOX_CHECK(writeScene(file, scene));
-    if (scene != scene_) {
+    if (moves) {
         for (std::vector<Step>* const steps : {&undo_, &redo_}) {
             for (Step& step : *steps) replacePaths(step.change, rebased);
         }
