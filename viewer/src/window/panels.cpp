@@ -32,6 +32,22 @@ void drawPick(const Session& session, const Pick& pick) {
     text(fmt::format("{:.3f} m away; nearest probe {}, {:.2f} m", pick.distanceMetres, probe, toProbe));
 }
 
+/// Those that took part in the last frame.
+void drawPasses(const PassTimes& times) {
+    const double sum = sumOf(times);
+    if (sum <= 0.0 || !ImGui::BeginTable("passes", 3)) return;
+    for (std::size_t i = 0; i < times.size(); ++i) {
+        if (times[i] <= 0.0) continue;
+        ImGui::TableNextColumn();
+        text(std::string(toString(static_cast<Pass>(i))));
+        ImGui::TableNextColumn();
+        text(fmt::format("{:.2f} ms", times[i]));
+        ImGui::TableNextColumn();
+        ImGui::ProgressBar(static_cast<float>(times[i] / sum), {-1.0f, ImGui::GetTextLineHeight()}, "");
+    }
+    ImGui::EndTable();
+}
+
 void drawHelp(Session& session) {
     const ImVec2 window = ImGui::GetIO().DisplaySize;
     ImGui::SetNextWindowPos({0.5f * window.x, 0.5f * window.y}, ImGuiCond_Appearing, {0.5f, 0.5f});
@@ -93,7 +109,7 @@ void Panels::drawScene(Session& session) {
 void Panels::drawStatistics(const Session& session) {
     const ImVec2 window = ImGui::GetIO().DisplaySize;
     const ImVec2 place(std::max(kMargin, window.x - kPanelWidth - kMargin), kMenuHeight + kMargin);
-    if (beginPanel("Statistics", statisticsOpen_, place, {kPanelWidth, 214.0f})) {
+    if (beginPanel("Statistics", statisticsOpen_, place, {kPanelWidth, 274.0f})) {
         text(session.device().info().name);
         const std::vector<float> times(session.frameTimesMs().begin(), session.frameTimesMs().end());
         if (!times.empty()) {
@@ -108,7 +124,10 @@ void Panels::drawStatistics(const Session& session) {
             text(fmt::format("frame {:.2f} ms on the device, worst {:.1f}", s.gpuMs, worst));
             const auto rays = static_cast<double>(s.cameraRays);
             text(fmt::format("{:.2f} million camera rays/s", s.gpuMs > 0.0 ? rays / s.gpuMs * 1e-3 : 0.0));
+            const double secondary = static_cast<double>(s.sunRays + s.reflectionRays);
+            text(fmt::format("{:.2f} million sun and mirror rays/s", s.gpuMs > 0.0 ? secondary / s.gpuMs * 1e-3 : 0.0));
             text(fmt::format("{:.1f} steps a camera ray", rays > 0.0 ? static_cast<double>(s.steps) / rays : 0.0));
+            drawPasses(s.passMs);
             text(fmt::format("{} frames in the picture", session.frames().frames()));
         }
         const gpu::MemoryUse memory = session.device().memory();

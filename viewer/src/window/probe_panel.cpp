@@ -121,8 +121,8 @@ void Panels::drawProbeDetail(Session& session) {
 
 void Panels::drawProbes(Session& session) {
     const ImVec2 window = ImGui::GetIO().DisplaySize;
-    const ImVec2 place(std::max(kMargin, window.x - kPanelWidth - kMargin), 250.0f);
-    if (beginPanel("Probes", probesOpen_, place, {kPanelWidth, std::max(120.0f, window.y - 258.0f)})) {
+    const ImVec2 place(std::max(kMargin, window.x - kPanelWidth - kMargin), 310.0f);
+    if (beginPanel("Probes", probesOpen_, place, {kPanelWidth, std::max(120.0f, window.y - 318.0f)})) {
         if (session.shown() == nullptr) {
             note("nothing is open");
         } else {
