@@ -135,6 +135,7 @@ class Session {
     void load(OpenPath path, bool keepCamera);
     void applyEdits();
     Result<void> rearrange(LoadedScene loaded);
+    void followSavedFile();
     void filesChanged();
     void executeEdit(const KeyBinding& binding);
     void moveSelected(MoveDirection direction);

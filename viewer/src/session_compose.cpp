@@ -1,5 +1,6 @@
 // The part of Session that edits: what changes the document, and how the picture follows it.
 #include <algorithm>
+#include <pfvox/bake.hpp>
 #include <system_error>
 
 #include "compose/model_edits.hpp"
@@ -105,15 +106,22 @@ void Session::filesChanged() {
 
 void Session::applyEdits() {
     if (!shown_ || loading_) return;
-    if (shown_->path.file != composer.editor.file() && !composer.editor.file().empty()) {
-        shown_->path = {.file = composer.editor.file(), .siblings = {composer.editor.file()}};  // saved under a name
-        wanted_ = shown_->path;
-        watchFiles(composer.editor.scene());
-    }
+    if (composer.takeWritten()) followSavedFile();
     std::optional<LoadedScene> scene = composer.update();
     if (!scene) return;
     const Result<void> done = rearrange(*std::move(scene));
     if (!done) log_->addError(describe(done.error()));
+}
+
+/// What we wrote ourselves is not read again.
+void Session::followSavedFile() {
+    const fs::path& file = composer.editor.file();
+    if (shown_->path.file != file) {
+        shown_->path = {.file = file, .siblings = {file}};
+        wanted_ = shown_->path;
+    }
+    watchFiles(composer.editor.scene());
+    if (probes_) probes_->ofThisScene = probes_->info.sceneHash == sceneContentHash(shown_->loaded);
 }
 
 Result<void> Session::rearrange(LoadedScene loaded) {

@@ -150,6 +150,7 @@ void Composer::answer(Answer answer) {
 }
 
 void Composer::afterSave() {
+    written_ = true;
     log_->dismissStrip();
     log_->add(MessageKind::Note, "wrote " + editor.file().string());
     if (!std::exchange(leavesAfterSave_, false)) return;

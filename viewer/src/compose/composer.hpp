@@ -5,6 +5,7 @@
 #include <deque>
 #include <functional>
 #include <future>
+#include <utility>
 
 #include "compose/model_shelf.hpp"
 #include "message_log.hpp"
@@ -48,6 +49,8 @@ class Composer {
     /// Asks for a name when the scene has none yet. True when it has been written.
     bool save();
     bool saveAs(const std::filesystem::path& file);
+    /// Whether the document has been written since the last call.
+    bool takeWritten() { return std::exchange(written_, false); }
 
     /// Tells an edit that was refused.
     void tell(const Result<void>& edit);
@@ -73,6 +76,7 @@ class Composer {
     WorldBounds bounds_;  ///< of the scene as given last, and what was added since
     std::function<void()> asked_;
     bool leavesAfterSave_ = false;
+    bool written_ = false;
 };
 
 }  // namespace pfvox::viewer

@@ -3,6 +3,7 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <array>
 
 #include "window/panels.hpp"
 #include "window/widgets.hpp"
@@ -38,7 +39,7 @@ void drawField(Session& session) {
     if (ImGui::Button("Load ...")) session.composer.dialog = Dialog::LoadProbes;
     if (probes == nullptr) {
         ImGui::SameLine();
-        return text("not baked: probe-bake <scene> makes them");
+        return note("none: probe-bake makes them");
     }
     ImGui::SameLine();
     if (ImGui::Button("Drop")) return session.dropProbes();
