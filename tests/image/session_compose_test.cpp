@@ -12,6 +12,7 @@ using ::testing::HasSubstr;
 class ComposeTest : public SessionFixture {
   protected:
     void SetUp() override {
+        SessionFixture::SetUp();
         write("a.pf_vox", box(8));
         write("b.pf_vox", box(4, 90));
         writeText(folder / "s.toml", "[[models]]\npath = 'a.pf_vox'\nname = 'first'\n");

@@ -13,6 +13,7 @@ using ::testing::HasSubstr;
 class SessionFilesTest : public SessionFixture {
   protected:
     void SetUp() override {
+        SessionFixture::SetUp();
         write("good.pf_vox", box(8));
         write("other.pf_vox", box(4));
         bytes = readText(folder / "other.pf_vox");

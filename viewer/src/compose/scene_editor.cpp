@@ -196,11 +196,14 @@ Result<void> SceneEditor::save() {
 
 Result<void> SceneEditor::saveAs(const fs::path& file) {
     const fs::path folder = file.parent_path();
+    // Without a file there was no good place to count from: its absolute paths are nobody's wish.
+    const bool isFirst = file_.empty();
     const auto rebased = [&](const std::string& path) {
-        return fs::path(path).is_absolute() ? path : pathFrom(folder, folder_ / fs::path(path));
+        const bool keeps = fs::path(path).is_absolute() && !isFirst;
+        return keeps ? path : pathFrom(folder, folder_ / fs::path(path));
     };
     Scene scene = scene_;
-    const bool moves = absolutePath(folder / ".") != absolutePath(folder_ / ".");
+    const bool moves = isFirst || absolutePath(folder / ".") != absolutePath(folder_ / ".");
     if (moves) {
         for (SceneModel& model : scene.models) model.path = rebased(model.path);
     }
