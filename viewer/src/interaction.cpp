@@ -8,13 +8,13 @@ namespace {
 constexpr double kDragThreshold = 4.0;  // a hand that clicks is not quite still
 }
 
-void Interaction::key(Key key, bool pressed, bool control) {
+void Interaction::key(Key key, bool pressed, bool control, bool shift) {
     if (!pressed) {
         keys_.erase(key);
         return;
     }
     if (!control) keys_.insert(key);
-    if (const KeyBinding* binding = bindingOf(key, control)) commands_.push_back(*binding);
+    if (const KeyBinding* binding = bindingOf(key, control, shift)) commands_.push_back(*binding);
 }
 
 void Interaction::cursor(glm::dvec2 position) {
@@ -26,6 +26,10 @@ void Interaction::cursor(glm::dvec2 position) {
         dragging_ = true;
         by = position - pressedAt_;
     }
+    if (grabbed_) {
+        drag_ = Drag{.to = cursor_ / size_, .ended = false};
+        return;
+    }
     const glm::dvec2 parts = by / size_.y;
     *held_ == MouseButton::Left ? camera_->turn(parts) : camera_->pan(parts);
 }
@@ -36,14 +40,22 @@ void Interaction::button(MouseButton button, bool pressed) {
         held_ = button;
         pressedAt_ = cursor_;
         dragging_ = false;
+        grabbed_ = button == MouseButton::Left && grabs(cursor_ / size_);
     } else if (held_ == button) {
-        if (!dragging_ && button == MouseButton::Left) click_ = cursor_ / size_;
+        if (!grabbed_ && !dragging_ && button == MouseButton::Left) click_ = cursor_ / size_;
+        letGo();
         held_.reset();
     }
 }
 
+void Interaction::letGo() {
+    if (!std::exchange(grabbed_, false)) return;
+    drag_ = Drag{.to = (dragging_ ? cursor_ : pressedAt_) / size_, .ended = true};
+}
+
 void Interaction::release() {
     keys_.clear();
+    letGo();
     held_.reset();
 }
 
@@ -64,6 +76,10 @@ std::vector<KeyBinding> Interaction::takeCommands() {
 
 std::optional<glm::dvec2> Interaction::takeClick() {
     return std::exchange(click_, std::nullopt);
+}
+
+std::optional<Drag> Interaction::takeDrag() {
+    return std::exchange(drag_, std::nullopt);
 }
 
 }  // namespace pfvox::viewer

@@ -39,7 +39,8 @@ std::optional<Pick> describePick(const LoadedScene& scene, const gpu::GpuRay& ra
             if (material >= asset.materials.size()) return std::nullopt;
             const SceneModel& model = scene.scene.models[part.model];
             const Material& m = asset.materials[material];
-            return Pick{.model = model.name.empty() ? model.path : model.name,
+            return Pick{.modelIndex = part.model,
+                        .model = model.name.empty() ? model.path : model.name,
                         .instance = numbered(instance, asset.instances[instance].name),
                         .material = numbered(material, m.name) + ", " + toString(m.type),
                         .baseColor = m.baseColor,
@@ -50,6 +51,11 @@ std::optional<Pick> describePick(const LoadedScene& scene, const gpu::GpuRay& ra
         instance -= asset.instances.size();
     }
     return std::nullopt;
+}
+
+std::uint32_t nearestProbe(const ProbeGrid& grid, const glm::dvec3& point) {
+    const glm::dvec3 steps = glm::round((point - glm::dvec3(grid.start)) / glm::dvec3(grid.step));
+    return grid.indexOf(glm::uvec3(glm::clamp(steps, glm::dvec3(0.0), glm::dvec3(grid.counts) - 1.0)));
 }
 
 }  // namespace pfvox::viewer

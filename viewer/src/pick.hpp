@@ -14,6 +14,7 @@ namespace pfvox::viewer {
 gpu::GpuRay rayThrough(const ViewCamera& camera, glm::dvec2 parts, double aspect);
 
 struct Pick {
+    std::size_t modelIndex = 0;  ///< in Scene::models
     std::string model;     ///< name, else path, of the scene's model
     std::string instance;  ///< its number within the file, and its name if it has one
     std::string material;  ///< its number within the file, its name if it has one, and its type
@@ -25,5 +26,8 @@ struct Pick {
 
 /// What a hit means in the scene's own words; nothing for a miss.
 std::optional<Pick> describePick(const LoadedScene& scene, const gpu::GpuRay& ray, const gpu::GpuHit& hit);
+
+/// Index of the grid's probe that stands nearest to a point, as the grid has it.
+std::uint32_t nearestProbe(const ProbeGrid& grid, const glm::dvec3& point);
 
 }  // namespace pfvox::viewer

@@ -26,8 +26,9 @@ std::string cameraKey(const fs::path& file) {
 
 /// "hall-001.png", the first number that is free.
 fs::path freeScreenshotName(const fs::path& folder, const fs::path& file) {
+    const std::string stem = file.empty() ? "scene" : file.stem().string();
     for (int i = 1;; ++i) {
-        fs::path name = folder / fmt::format("{}-{:03}.png", file.stem().string(), i);
+        fs::path name = folder / fmt::format("{}-{:03}.png", stem, i);
         std::error_code error;
         if (!fs::exists(name, error)) return name;
     }
@@ -51,6 +52,10 @@ Result<std::unique_ptr<Session>> Session::create(gpu::Device& device, const Sess
 }
 
 void Session::open(const fs::path& path) {
+    composer.leave([this, path] { openNow(path); });
+}
+
+void Session::openNow(const fs::path& path) {
     Result<OpenPath> opened = openPath(path);
     if (!opened) {
         log_->addError(describe(opened.error()));
@@ -82,6 +87,10 @@ void Session::load(OpenPath path, bool keepCamera) {
 
 void Session::watchFiles(const Scene& scene) {
     std::vector<fs::path> files = filesOf(wanted_.file, scene);
+    if (wanted_.file.empty()) {  // a new scene
+        files.clear();
+        for (const SceneModel& model : scene.models) files.push_back(composer.editor.fileOf(model));
+    }
     if (!probeRequest_.none)
         files.push_back(probeRequest_.file.empty() ? probesBeside(wanted_.file) : probeRequest_.file);
     watch_.watch(files);
@@ -136,7 +145,10 @@ Result<void> Session::show(OpenPath path, LoadedScene loaded, bool keepCamera) {
     const bool sameLight = keepCamera && shown_ && lightingOf(shown_->loaded.scene) == lightingOf(loaded.scene);
     if (!sameLight) lighting = lightingOf(loaded.scene);
     if (!keepCamera) probes_.reset();
-    shown_.emplace(ShownScene{std::move(path), std::move(loaded), std::move(scene)});
+    std::vector<WorldBounds> boxes = assetBoxesOf(loaded);
+    shown_.emplace(ShownScene{std::move(path), std::move(loaded), std::move(scene), std::move(boxes)});
+    composer.begin(shown_->path.file, shown_->loaded);
+    selectedProbe.reset();
     findProbesOf(*shown_);
     frames_.restart();
     drawn_.reset();
@@ -160,9 +172,10 @@ void Session::update(double secondsSinceStart) {
             log_->addError(describe(shown.error()));
         }
     }
+    applyEdits();
     if (secondsSinceStart < nextPoll_) return;
     nextPoll_ = secondsSinceStart + kPollSeconds;
-    if (!loading_ && watch_.poll()) reload();
+    if (!loading_ && watch_.poll()) filesChanged();
 }
 
 double Session::aspect() const {
@@ -212,16 +225,18 @@ void Session::execute(const KeyBinding& binding) {
         case Command::Screenshot:
             return writeScreenshot();
         case Command::Reload:
-            return reload();
+            return composer.leave([this] { reload(); });
         case Command::NextFile:
-            return load({.file = neighbourOf(wanted_, 1), .siblings = wanted_.siblings}, false);
+            return openNeighbour(1);
         case Command::PreviousFile:
-            return load({.file = neighbourOf(wanted_, -1), .siblings = wanted_.siblings}, false);
+            return openNeighbour(-1);
         case Command::DismissMessage:
+            if (!log_->strip()) composer.editor.select(std::nullopt);
             return log_->dismissStrip();
         case Command::Quit:
-            quit_ = true;
-            return;
+            return quit();
+        default:
+            return executeEdit(binding);
     }
 }
 
@@ -233,6 +248,7 @@ void Session::pickAt(glm::dvec2 parts) {
         query_.cast(*device_, shown_->scene, {&ray, 1}, gpu::RayMode::ClosestHit);
     if (!batch) return log_->addError(describe(batch.error()));
     pick_ = describePick(shown_->loaded, ray, batch->hits.front());
+    composer.editor.select(pick_ ? std::optional(pick_->modelIndex) : std::nullopt);
     if (pick_) {
         log_->add(MessageKind::Note, fmt::format("voxel {}, {}, {} of '{}', instance {}, material {}", pick_->voxel.x,
                                                  pick_->voxel.y, pick_->voxel.z, pick_->model, pick_->instance,
@@ -286,13 +302,13 @@ Result<void> Session::draw(glm::uvec2 windowPixels) {
 }
 
 void Session::rememberCamera() {
-    if (shown_) cameras_[cameraKey(shown_->path.file)] = camera.camera();
+    if (shown_ && !shown_->path.file.empty()) cameras_[cameraKey(shown_->path.file)] = camera.camera();
 }
 
 Memory Session::memory() const {
     Memory memory{.settings = settings, .cameras = cameras_};
     memory.settings.cameraMode = camera.mode;
-    if (shown_) memory.cameras[cameraKey(shown_->path.file)] = camera.camera();
+    if (shown_ && !shown_->path.file.empty()) memory.cameras[cameraKey(shown_->path.file)] = camera.camera();
     return memory;
 }
 

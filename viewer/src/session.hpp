@@ -13,8 +13,11 @@
 #include "camera_choice.hpp"
 #include "camera_controller.hpp"
 #include "commands.hpp"
+#include "compose/composer.hpp"
+#include "compose/model_drag.hpp"
 #include "file_watch.hpp"
 #include "frame_sequence.hpp"
+#include "interaction.hpp"
 #include "message_log.hpp"
 #include "open_path.hpp"
 #include "pick.hpp"
@@ -28,6 +31,7 @@ struct ShownScene {
     OpenPath path;
     LoadedScene loaded;
     gpu::Scene scene;
+    std::vector<WorldBounds> assetBoxes = {};  ///< of each of loaded.parts, in the metres of its file
 };
 
 /// What the command line asks for.
@@ -46,9 +50,9 @@ class Session {
     static Result<std::unique_ptr<Session>> create(gpu::Device& device, const SessionStart& start, Memory memory,
                                                    MessageLog& log);
 
-    /// Begins to load another file, scene or folder.
+    /// Begins to load another file, scene or folder, after the question about unsaved changes.
     void open(const std::filesystem::path& path);
-    /// The same files again.
+    /// The same files again; unsaved changes are lost.
     void reload();
     /// Probes from this file for what is shown, at once; on an error the probes so far stay and the strip tells. Empty =
     /// those beside the scene, if there are any.
@@ -56,8 +60,34 @@ class Session {
     /// Light without probes until the next loadProbes() or open().
     void dropProbes();
     void execute(const KeyBinding& binding);
-    /// Tells what is at a point of the picture: parts of its edges from the upper left.
+    /// Tells what is at a point of the picture: parts of its edges from the upper left. Its model becomes selected.
     void pickAt(glm::dvec2 parts);
+
+    // Composing (session_compose.cpp).
+    void newScene();
+    /// Models dropped upon a scene are added to it; else the last one is opened.
+    void drop(const std::vector<std::filesystem::path>& files);
+    /// Begins to read; a new scene when there is none.
+    void addModels(const std::vector<std::filesystem::path>& files);
+    /// Ends the program, after the question about unsaved changes.
+    void quit();
+    /// A probe of the grid that is drawn, else as pickAt().
+    void clickAt(glm::dvec2 parts);
+    /// Takes hold of the handle there, if there is one.
+    bool grabAt(glm::dvec2 parts);
+    void drag(const Drag& drag);
+    /// Camera and window as they are: what is drawn upon the picture goes through it.
+    Projection projection() const { return {camera.camera(), windowSize}; }
+    /// At the selected model; nothing when none that is seen is selected.
+    std::optional<Gizmo> gizmo() const;
+    void frameSelected();
+    /// The present view becomes a camera of the scene.
+    void addCamera();
+    /// Where a probe of the shown scene's grid stands, or will: of a baked field of the same grid it is the place after
+    /// relocation. Precondition: shown() and an index of its grid.
+    glm::dvec3 placeOfProbe(std::uint32_t index) const;
+    /// Of the file of the selected model, metres. Precondition: shown().
+    double fileVoxelOfSelected() const;
     void frameAll();
 
     /// Takes over what has been loaded, looks after changed files.
@@ -89,6 +119,9 @@ class Session {
     ViewMode mode = ViewMode::Final;  ///< one that checkView refuses shows the final picture instead
     AtlasChoice atlas;                ///< which probes the atlas views show
     bool showHelp = false;
+    Composer composer;
+    std::optional<std::uint32_t> selectedProbe;  ///< index in the grid of the shown scene
+    glm::dvec2 windowSize{1280.0, 720.0};        ///< in the unit of cursor positions
 
   private:
     struct Loading {
@@ -97,8 +130,17 @@ class Session {
         std::future<Result<LoadedScene>> scene;
     };
     Session(gpu::Device& device, FrameSequence frames, gpu::RayQuery query, MessageLog& log)
-        : device_(&device), log_(&log), frames_(std::move(frames)), query_(std::move(query)) {}
+        : composer(log), device_(&device), log_(&log), frames_(std::move(frames)), query_(std::move(query)) {}
+    void openNow(const std::filesystem::path& path);
     void load(OpenPath path, bool keepCamera);
+    void applyEdits();
+    Result<void> rearrange(LoadedScene loaded);
+    void followSavedFile();
+    void filesChanged();
+    void executeEdit(const KeyBinding& binding);
+    void moveSelected(MoveDirection direction);
+    void changeSelected(const std::function<SceneModel(const SceneModel&, const WorldBounds&)>& change);
+    bool selectProbeAt(glm::dvec2 parts);
     void findProbesOf(const ShownScene& shown);
     void watchFiles(const Scene& scene);
     void setMode(ViewMode wanted);
@@ -106,6 +148,7 @@ class Session {
     Result<void> placeCamera(const std::filesystem::path& file, const Scene& scene);
     void rememberCamera();
     void nextCamera();
+    void openNeighbour(int step);
     void writeScreenshot();
     PictureSettings pictureSettings(glm::uvec2 windowPixels) const;
     double aspect() const;
@@ -128,6 +171,7 @@ class Session {
     std::deque<float> frameTimesMs_;
     std::optional<Pick> pick_;
     std::size_t sceneCamera_ = 0;
+    std::optional<ModelDrag> drag_;
     bool quit_ = false;
 };
 

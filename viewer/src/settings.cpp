@@ -129,16 +129,18 @@ Result<Settings> parseSettings(std::string_view text, Diagnostics& diagnostics) 
     reader.number("lodPixels", 0.0, 16.0, settings.lodPixels);
     reader.number("exposureStops", -16.0, 16.0, settings.exposureStops);
     reader.toneMap("toneMap", settings.toneMap);
+    reader.flag("showProbeGrid", settings.showProbeGrid);
+    reader.flag("showBounds", settings.showBounds);
     return settings;
 }
 
 std::string settingsText(const Settings& settings) {
     return fmt::format(
         "windowWidth = {}\nwindowHeight = {}\ncameraMode = '{}'\nshowWindows = {}\nantiAliasing = {}\n"
-        "renderScale = {:.6f}\nlodPixels = {:.6f}\nexposureStops = {:.6f}\ntoneMap = '{}'\n",
+        "renderScale = {:.6f}\nlodPixels = {:.6f}\nexposureStops = {:.6f}\ntoneMap = '{}'\nshowProbeGrid = {}\nshowBounds = {}\n",
         settings.windowWidth, settings.windowHeight, settings.cameraMode == CameraMode::Fly ? "fly" : "orbit",
         settings.showWindows, settings.antiAliasing, settings.renderScale, settings.lodPixels,
-        settings.exposureStops, toString(settings.toneMap));
+        settings.exposureStops, toString(settings.toneMap), settings.showProbeGrid, settings.showBounds);
 }
 
 Result<CameraMemory> parseCameras(std::string_view text) {

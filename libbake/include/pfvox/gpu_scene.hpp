@@ -6,6 +6,7 @@
 // its octree read two levels at a time (docs/decisions/012-wide-tree.md). World units are metres, right-handed, +Y up.
 #pragma once
 
+#include <memory>
 #include <pfvox/error.hpp>
 #include <pfvox/gpu.hpp>
 #include <pfvox/math.hpp>
@@ -60,7 +61,12 @@ class Scene {
     /// model are left out; one whose transform cannot be inverted too, with the diagnostic
     /// "scene-flat-instance". Errors: BadReference (instance of a model that does not exist),
     /// UnsupportedFeature (octree deeper than 23 levels), GpuOutOfMemory, GpuLost.
-    static Result<Scene> build(Device& device, std::span<const ScenePart> parts, Diagnostics& diagnostics);
+    ///
+    /// Models that `known` has on this device are shared with it instead of laid out and uploaded again, as long as their
+    /// materials begin at the same place of the scene's list: moving, adding and copying cost instances and BVH only. The
+    /// assets that `known` was built from must still be there.
+    static Result<Scene> build(Device& device, std::span<const ScenePart> parts, Diagnostics& diagnostics,
+                               const Scene* known = nullptr);
 
     /// Device address of the shared::SceneHeader.
     glm::uvec2 address() const { return table_.addressWords(); }
@@ -68,10 +74,13 @@ class Scene {
     const SceneStatistics& statistics() const { return statistics_; }  ///< fixed after build()
 
   private:
-    Scene(Buffer table, std::vector<Buffer> blocks) : table_(std::move(table)), blocks_(std::move(blocks)) {}
+    struct PlacedModel;
+    using PlacedModels = std::vector<std::shared_ptr<const PlacedModel>>;
+    class ModelPlacer;
+    Scene(Buffer table, PlacedModels models) : table_(std::move(table)), models_(std::move(models)) {}
 
-    Buffer table_;                ///< header, BVH, instances, models, materials
-    std::vector<Buffer> blocks_;  ///< regions and top trees
+    Buffer table_;         ///< header, BVH, instances, models, materials
+    PlacedModels models_;  ///< and the blocks of their regions and top trees
     WorldBox bounds_;
     SceneStatistics statistics_;
 };

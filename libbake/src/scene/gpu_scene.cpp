@@ -1,4 +1,5 @@
 #include <chrono>
+#include <map>
 #include <pfvox/gpu_scene.hpp>
 
 #include "scene/block_arena.hpp"
@@ -13,6 +14,7 @@ using namespace detail;
 
 /// A model on its way to the device, and where its arrays lie in its block.
 struct WideModel {
+    std::size_t index = 0;  ///< in SceneRecords::models
     WideTree tree;
     BlockPlace place;
     std::uint64_t lodsAt = 0;
@@ -24,20 +26,14 @@ constexpr std::uint64_t padded(std::uint64_t sizeBytes) {
     return (sizeBytes + 63) / 64 * 64;
 }
 
-Result<WideModel> layOut(const UsedModel& used, BlockArena& arena, SceneStatistics& statistics) {
+Result<WideModel> layOut(std::size_t index, const UsedModel& used, BlockArena& arena) {
     PFVOX_TRY(WideTree, tree, widen(*used.model, used.firstMaterial));
-    WideModel model{.tree = std::move(tree), .place = {}};
+    WideModel model{.index = index, .tree = std::move(tree), .place = {}};
     model.lodsAt = padded(model.tree.nodeBytes());
     model.valuesAt = model.lodsAt + padded(model.tree.lodBytes());
     model.palettesAt = model.valuesAt + padded(model.tree.valueBytes());
     PFVOX_TRY(const BlockPlace, place, arena.add(model.palettesAt + padded(model.tree.paletteBytes())));
     model.place = place;
-    statistics.voxels += used.model->voxelCount;
-    statistics.regions += static_cast<std::uint32_t>(used.model->regions.size());
-    statistics.nodeBytes += model.tree.nodeBytes();
-    statistics.lodBytes += model.tree.lodBytes();
-    statistics.valueBytes += model.tree.valueBytes();
-    statistics.paletteBytes += model.tree.paletteBytes();
     return model;
 }
 
@@ -119,23 +115,91 @@ std::vector<ScenePart> partsOf(const LoadedScene& scene) {
     return parts;
 }
 
-Result<Scene> Scene::build(Device& device, std::span<const ScenePart> parts, Diagnostics& diagnostics) {
+/// A model on the device. The buffer holds other models too.
+struct Scene::PlacedModel {
+    UsedModel used;
+    shared::ModelRecord record;
+    std::uint64_t nodeBytes = 0;
+    std::uint64_t lodBytes = 0;
+    std::uint64_t valueBytes = 0;
+    std::uint64_t paletteBytes = 0;
+    std::shared_ptr<const Buffer> block;
+};
+
+/// Brings models to the device, or takes those that are there.
+class Scene::ModelPlacer {
+  public:
+    ModelPlacer(Device& device, const Scene* known) : device_(device), arena_(device.maxBufferBytes()) {
+        if (known == nullptr) return;
+        for (const auto& model : known->models_) known_[keyOf(model->used)] = model;
+    }
+
+    Result<PlacedModels> place(const std::vector<UsedModel>& wanted) {
+        placed_.resize(wanted.size());
+        std::vector<WideModel> fresh;
+        for (std::size_t i = 0; i < wanted.size(); ++i) {
+            const auto found = known_.find(keyOf(wanted[i]));
+            if (found != known_.end()) {
+                placed_[i] = found->second;
+                continue;
+            }
+            PFVOX_TRY(WideModel, model, layOut(i, wanted[i], arena_));
+            fresh.push_back(std::move(model));
+        }
+        PFVOX_CHECK(arena_.createBuffers(device_));
+        for (const WideModel& model : fresh) PFVOX_CHECK(upload(wanted[model.index], model));
+        share(fresh);
+        return PlacedModels(placed_.begin(), placed_.end());
+    }
+
+  private:
+    using Key = std::pair<const OctreeModel*, std::uint32_t>;
+    static Key keyOf(const UsedModel& used) { return {used.model, used.firstMaterial}; }
+
+    Result<void> upload(const UsedModel& used, const WideModel& model) {
+        PFVOX_TRY(const shared::ModelRecord, record, uploadModel(device_, used, model, arena_));
+        fresh_[model.index] = std::make_shared<PlacedModel>(PlacedModel{.used = used,
+                                                                        .record = record,
+                                                                        .nodeBytes = model.tree.nodeBytes(),
+                                                                        .lodBytes = model.tree.lodBytes(),
+                                                                        .valueBytes = model.tree.valueBytes(),
+                                                                        .paletteBytes = model.tree.paletteBytes(),
+                                                                        .block = nullptr});
+        return {};
+    }
+
+    /// Each buffer lives as long as one of its models does.
+    void share(const std::vector<WideModel>& fresh) {
+        std::vector<std::shared_ptr<const Buffer>> blocks;
+        for (Buffer& buffer : arena_.takeBuffers()) blocks.push_back(std::make_shared<const Buffer>(std::move(buffer)));
+        for (const WideModel& model : fresh) {
+            fresh_[model.index]->block = blocks[model.place.buffer];
+            placed_[model.index] = fresh_[model.index];
+        }
+    }
+
+    Device& device_;
+    BlockArena arena_;
+    std::map<Key, std::shared_ptr<const PlacedModel>> known_;
+    std::map<std::size_t, std::shared_ptr<PlacedModel>> fresh_;
+    std::vector<std::shared_ptr<const PlacedModel>> placed_;
+};
+
+Result<Scene> Scene::build(Device& device, std::span<const ScenePart> parts, Diagnostics& diagnostics,
+                           const Scene* known) {
     const auto started = std::chrono::steady_clock::now();
     PFVOX_TRY(const SceneRecords, records, makeRecords(parts, diagnostics));
-
-    SceneStatistics statistics;
-    BlockArena arena(device.maxBufferBytes());
-    std::vector<WideModel> wideModels;
-    for (const UsedModel& used : records.models) {
-        PFVOX_TRY(WideModel, model, layOut(used, arena, statistics));
-        wideModels.push_back(std::move(model));
-    }
-    PFVOX_CHECK(arena.createBuffers(device));
+    PFVOX_TRY(PlacedModels, placed, ModelPlacer(device, known).place(records.models));
     std::vector<shared::ModelRecord> models;
-    for (std::size_t i = 0; i < wideModels.size(); ++i) {
-        PFVOX_TRY(const shared::ModelRecord, record,
-                  uploadModel(device, records.models[i], wideModels[i], arena));
-        models.push_back(record);
+    SceneStatistics statistics;
+    for (const auto& model : placed) {
+        models.push_back(model->record);
+        statistics.voxels += model->used.model->voxelCount;
+        statistics.regions += static_cast<std::uint32_t>(model->used.model->regions.size());
+        statistics.nodeBytes += model->nodeBytes;
+        statistics.lodBytes += model->lodBytes;
+        statistics.valueBytes += model->valueBytes;
+        statistics.paletteBytes += model->paletteBytes;
     }
     PFVOX_TRY(Buffer, table, uploadTable(device, records, models));
     PFVOX_CHECK(device.flush());
@@ -152,7 +216,7 @@ Result<Scene> Scene::build(Device& device, std::span<const ScenePart> parts, Dia
     const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - started;
     statistics.buildMs = elapsed.count();
 
-    Scene scene(std::move(table), arena.takeBuffers());
+    Scene scene(std::move(table), std::move(placed));
     scene.bounds_ = records.bounds;
     scene.statistics_ = statistics;
     return scene;

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 
 #include <set>
+#include <tuple>
 
 namespace pfvox::test {
 namespace {
@@ -102,16 +103,59 @@ TEST_F(InteractionTest, CommandsComeInOrderAndOnce) {
     EXPECT_FALSE(interaction.isMoving()) << "Ctrl+Q is not Q";
 }
 
+TEST_F(InteractionTest, WhatIsGrabbedMovesInsteadOfTheCamera) {
+    interaction.grabs = [](glm::dvec2 parts) { return parts.x < 0.5; };
+    interaction.cursor({200, 150});
+    interaction.button(MouseButton::Left, true);
+    EXPECT_FALSE(interaction.takeDrag());
+    interaction.cursor({240, 150});
+    auto drag = interaction.takeDrag();
+    ASSERT_TRUE(drag);
+    EXPECT_NEAR(drag->to.x, 0.3, 1e-12);
+    EXPECT_FALSE(drag->ended);
+    interaction.button(MouseButton::Left, false);
+    drag = interaction.takeDrag();
+    ASSERT_TRUE(drag);
+    EXPECT_TRUE(drag->ended);
+    EXPECT_EQ(camera.camera().position, glm::dvec3(0, 0, 10));
+    // Pressed and let go on the spot: nothing moves, and it is no click.
+    interaction.cursor({200, 150});
+    interaction.button(MouseButton::Left, true);
+    interaction.cursor({202, 150});
+    interaction.button(MouseButton::Left, false);
+    drag = interaction.takeDrag();
+    ASSERT_TRUE(drag);
+    EXPECT_NEAR(drag->to.x, 0.25, 1e-12);
+    EXPECT_FALSE(interaction.takeClick());
+    // Elsewhere, and with other buttons, the camera moves.
+    this->drag(MouseButton::Left, {600, 100}, {700, 100});
+    this->drag(MouseButton::Right, {100, 100}, {200, 100});
+    EXPECT_FALSE(interaction.takeDrag());
+    EXPECT_NE(camera.camera().position, glm::dvec3(0, 0, 10));
+    // A window that loses the focus lets go.
+    interaction.cursor({200, 150});
+    interaction.button(MouseButton::Left, true);
+    interaction.release();
+    EXPECT_TRUE(interaction.takeDrag()->ended);
+}
+
 TEST(KeyBindings, NoKeyHasTwoMeaningsAndNoneMovesToo) {
-    std::set<std::pair<Key, bool>> seen;
+    std::set<std::tuple<Key, bool, bool>> seen;
     for (const KeyBinding& binding : keyBindings()) {
-        EXPECT_TRUE(seen.insert({binding.key, binding.control}).second) << binding.keyText;
+        EXPECT_TRUE(seen.insert({binding.key, binding.control, binding.shift}).second) << binding.keyText;
         EXPECT_FALSE(binding.keyText.empty());
         EXPECT_FALSE(binding.what.empty());
         const bool moves = std::string("WASDEQ").find(binding.keyText) != std::string::npos;
         EXPECT_FALSE(moves && !binding.control) << binding.keyText;
     }
     EXPECT_EQ(bindingOf('Q', false), nullptr);
+    EXPECT_EQ(bindingOf('Z', true)->command, Command::Undo);
+    EXPECT_EQ(bindingOf('Z', true, true)->command, Command::Redo);
+    EXPECT_EQ(bindingOf('F', false, true)->command, Command::FrameSelected);
+    EXPECT_EQ(bindingOf('3', false, true)->command, Command::ShowView) << "shift says nothing here";
+    EXPECT_EQ(bindingOf(Command::SaveAs)->keyText, "Ctrl+Shift+S");
+    EXPECT_EQ(bindingOf(Command::Turn, -15)->key, kKeyRight);
+    EXPECT_EQ(bindingOf(Command::Turn, 7), nullptr);
     EXPECT_EQ(bindingOf(kKeyOther, false), nullptr);
     EXPECT_EQ(bindingOf('7', false)->argument, static_cast<int>(ViewMode::Lod));
 }

@@ -41,22 +41,27 @@ Result<App> openWindow(const gpu::Device& device, Interaction& interaction, glm:
 }
 
 std::string titleOf(const Session& session) {
-    if (session.shown() == nullptr) return "pfview";
-    return session.shown()->path.file.filename().string() + " - pfview";
+    const std::string name = nameOf(session);
+    return name.empty() ? "pfview" : name + " - pfview";
 }
 
 void handleInput(App& app, Interaction& interaction, Session& session, double seconds) {
-    for (const std::filesystem::path& path : app.window->takeDropped()) session.open(path);
+    session.windowSize = glm::dvec2(app.window->size());
+    session.drop(app.window->takeDropped());
     for (const KeyBinding& binding : interaction.takeCommands()) session.execute(binding);
-    if (const std::optional<glm::dvec2> click = interaction.takeClick()) session.pickAt(*click);
+    if (const std::optional<glm::dvec2> click = interaction.takeClick()) session.clickAt(*click);
+    if (const std::optional<Drag> drag = interaction.takeDrag()) session.drag(*drag);
     interaction.advance(std::min(seconds, kLongestStepSeconds));
 }
 
 Result<void> runLoop(App& app, Interaction& interaction, Session& session) {
     const Clock::time_point started = Clock::now();
     double last = 0.0;
+    Panels panels;
     int busyFrames = 0;  // that are still to be shown without waiting: the overlay settles after an event
-    while (!app.window->wantsToClose() && !session.wantsToQuit()) {
+    interaction.grabs = [&](glm::dvec2 parts) { return session.grabAt(parts); };
+    while (!session.wantsToQuit()) {
+        if (app.window->takeCloseRequest()) session.quit();
         const bool busy = busyFrames > 0 || interaction.isMoving() || session.needsFrame(app.window->pixels());
         const Clock::time_point polled = Clock::now();
         const bool shown = app.window->pixels().x != 0;
@@ -72,7 +77,7 @@ Result<void> runLoop(App& app, Interaction& interaction, Session& session) {
         session.update(now.count());
         PFVOX_CHECK(session.draw(app.window->pixels()));
         app.window->setTitle(titleOf(session));
-        app.overlay->build([&] { drawPanels(session); });
+        app.overlay->build([&] { panels.draw(session); });
         const ShownPixels pixels{.buffer = session.frames().pixels(), .size = session.frames().size()};
         PFVOX_CHECK(app.presenter->show(app.window->pixels(), pixels,
                                         [&](VkCommandBuffer commands) { app.overlay->draw(commands); }));

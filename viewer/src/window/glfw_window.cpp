@@ -30,6 +30,18 @@ Key keyOf(int key) {
         case GLFW_KEY_LEFT_SHIFT:
         case GLFW_KEY_RIGHT_SHIFT:
             return kKeyShift;
+        case GLFW_KEY_LEFT:
+            return kKeyLeft;
+        case GLFW_KEY_RIGHT:
+            return kKeyRight;
+        case GLFW_KEY_UP:
+            return kKeyUp;
+        case GLFW_KEY_DOWN:
+            return kKeyDown;
+        case GLFW_KEY_INSERT:
+            return kKeyInsert;
+        case GLFW_KEY_DELETE:
+            return kKeyDelete;
         default:
             break;
     }
@@ -97,8 +109,12 @@ GlfwWindow& GlfwWindow::of(GLFWwindow* window) {
 void GlfwWindow::installCallbacks() {
     glfwSetKeyCallback(window_, [](GLFWwindow* w, int key, int scancode, int action, int mods) {
         GlfwWindow& self = of(w);
-        if (action == GLFW_REPEAT || (action == GLFW_PRESS && self.capture().keys)) return;
-        self.interaction_->key(keyOf(key, scancode), action == GLFW_PRESS, (mods & GLFW_MOD_CONTROL) != 0);
+        const Key which = keyOf(key, scancode);
+        if (action == GLFW_REPEAT && !repeats(which)) return;
+        const Capture taken = self.capture();
+        if (action != GLFW_RELEASE && (taken.keys || (taken.arrows && repeats(which)))) return;
+        self.interaction_->key(which, action != GLFW_RELEASE, (mods & GLFW_MOD_CONTROL) != 0,
+                               (mods & GLFW_MOD_SHIFT) != 0);
     });
     glfwSetCursorPosCallback(window_,
                              [](GLFWwindow* w, double x, double y) { of(w).interaction_->cursor({x, y}); });
@@ -144,8 +160,10 @@ glm::uvec2 GlfwWindow::pixels() const {
     return {static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)};
 }
 
-bool GlfwWindow::wantsToClose() const {
-    return glfwWindowShouldClose(window_) == GLFW_TRUE;
+bool GlfwWindow::takeCloseRequest() {
+    const bool asked = glfwWindowShouldClose(window_) == GLFW_TRUE;
+    if (asked) glfwSetWindowShouldClose(window_, GLFW_FALSE);
+    return asked;
 }
 
 void GlfwWindow::setTitle(const std::string& title) {

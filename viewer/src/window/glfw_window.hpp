@@ -38,6 +38,7 @@ class GlfwWindow {
     struct Capture {
         bool mouse = false;
         bool keys = false;
+        bool arrows = false;  ///< the keys that move about in the overlay
     };
 
     /// Errors: GpuUnavailable.
@@ -52,7 +53,8 @@ class GlfwWindow {
     GLFWwindow* handle() const { return window_; }
     glm::uvec2 size() const;    ///< in the unit of cursor positions
     glm::uvec2 pixels() const;  ///< 0 while minimised
-    bool wantsToClose() const;
+    /// Whether the user has asked to close it since the last call.
+    bool takeCloseRequest();
     void setTitle(const std::string& title);
     /// Handles what has happened; waits for something for at most `seconds` when nothing has.
     void pollEvents(double seconds);

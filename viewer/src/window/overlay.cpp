@@ -20,12 +20,15 @@ Result<std::unique_ptr<Overlay>> Overlay::create(GlfwWindow& window, Presenter& 
         std::error_code ignored;  // without the folder the layout is not kept, that is all
         std::filesystem::create_directories(layoutFile.parent_path(), ignored);
     }
+    ImGui::GetIO().ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;  // all of it without a mouse
     overlay->layoutFile_ = layoutFile.string();
     ImGui::GetIO().IniFilename = layoutFile.empty() ? nullptr : overlay->layoutFile_.c_str();
     PFVOX_CHECK(overlay->start(window, presenter));
     window.capture = [] {
         const ImGuiIO& io = ImGui::GetIO();
-        return GlfwWindow::Capture{.mouse = io.WantCaptureMouse, .keys = io.WantTextInput};
+        const bool asks = ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup);
+        return GlfwWindow::Capture{
+            .mouse = io.WantCaptureMouse, .keys = io.WantTextInput || asks, .arrows = io.NavActive};
     };
     return overlay;
 }

@@ -1,0 +1,85 @@
+// Sun and sky of the scene, and how it is drawn.
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "window/panels.hpp"
+#include "window/widgets.hpp"
+
+namespace pfvox::viewer {
+
+namespace {
+
+void drawSun(Session& session) {
+    SceneEditor& editor = session.composer.editor;
+    Sun sun = editor.scene().sun;
+    // As two angles: where the sun stands. Its length says nothing.
+    const glm::dvec3 towards = -glm::normalize(sun.direction);
+    double height = glm::degrees(std::asin(std::clamp(towards.y, -1.0, 1.0)));
+    double azimuth = glm::degrees(std::atan2(towards.x, towards.z));
+    const bool turned = slider("sun azimuth", azimuth, -180.0, 180.0, "%.0f deg");
+    if (ImGui::IsItemDeactivated()) editor.endGesture();
+    const bool raised = slider("sun height", height, -89.0, 89.0, "%.0f deg");
+    if (ImGui::IsItemDeactivated()) editor.endGesture();
+    if (turned || raised) {
+        const double a = glm::radians(azimuth);
+        const double h = glm::radians(height);
+        sun.direction = -glm::dvec3(std::cos(h) * std::sin(a), std::sin(h), std::cos(h) * std::cos(a));
+        session.composer.tell(editor.setSun(sun, "direction"));
+    }
+    // Strength apart from the colour: the largest channel.
+    double strength = std::max({sun.irradiance.r, sun.irradiance.g, sun.irradiance.b});
+    glm::dvec3 colour = strength > 0.0 ? sun.irradiance / strength : glm::dvec3(1.0);
+    const bool tinted = editColour("sun colour", colour, editor);
+    const bool scaled = dragNumber("sun strength", strength, {.speed = 0.02f, .low = 0.0, .high = 1e6}, editor);
+    if (tinted || scaled) {
+        sun.irradiance = strength * colour;
+        session.composer.tell(editor.setSun(sun, tinted ? "colour" : "strength"));
+    }
+}
+
+}  // namespace
+
+void drawSunAndSky(Session& session) {
+    SceneEditor& editor = session.composer.editor;
+    drawSun(session);
+    Sky sky = editor.scene().sky;
+    const bool zenith = editColour("zenith", sky.zenith, editor);
+    const bool horizon = editColour("horizon", sky.horizon, editor);
+    const bool ground = editColour("ground", sky.ground, editor);
+    if (zenith || horizon || ground) session.composer.tell(editor.setSky(sky, "sky"));
+}
+
+void Panels::drawRendering(Session& session) {
+    const ImVec2 window = ImGui::GetIO().DisplaySize;
+    if (beginPanel("Rendering", renderingOpen_, {kMargin, std::max(470.0f, window.y - 250.0f)}, {kPanelWidth, 242.0f})) {
+        ImGui::PushItemWidth(-96.0f);
+        if (ImGui::BeginCombo("view", std::string(toString(session.mode)).c_str())) {
+            for (const ViewEntry& view : viewModes()) {
+                const bool chosen = ImGui::Selectable(std::string(view.name).c_str(), view.mode == session.mode);
+                if (chosen) session.execute(*bindingOf(Command::ShowView, static_cast<int>(view.mode)));
+            }
+            ImGui::EndCombo();
+        }
+        if (session.shown() != nullptr && ImGui::CollapsingHeader("sun and sky", ImGuiTreeNodeFlags_DefaultOpen))
+            drawSunAndSky(session);
+        if (ImGui::CollapsingHeader("picture", ImGuiTreeNodeFlags_DefaultOpen)) {
+            slider("exposure", session.settings.exposureStops, -8.0, 8.0, "%.1f stops");
+            if (ImGui::BeginCombo("tone map", std::string(toString(session.settings.toneMap)).c_str())) {
+                for (const ToneMapEntry& map : toneMaps()) {
+                    if (ImGui::Selectable(std::string(map.name).c_str(), map.toneMap == session.settings.toneMap))
+                        session.settings.toneMap = map.toneMap;
+                }
+                ImGui::EndCombo();
+            }
+            slider("detail", session.settings.lodPixels, 0.0, 16.0, "%.1f pixels");
+            slider("resolution", session.settings.renderScale, 0.25, 1.0, "%.2f");
+            ImGui::Checkbox("anti-aliasing over frames", &session.settings.antiAliasing);
+        }
+        ImGui::PopItemWidth();
+    }
+    ImGui::End();
+}
+
+}  // namespace pfvox::viewer

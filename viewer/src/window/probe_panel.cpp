@@ -1,0 +1,138 @@
+// The probe grid, the probes that light the scene, and one of them.
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <array>
+
+#include "window/panels.hpp"
+#include "window/widgets.hpp"
+
+namespace pfvox::viewer {
+
+namespace {
+
+/// The whole grid, with the step it has, so that it encloses the models.
+void fitToScene(Session& session) {
+    const LoadedScene& loaded = session.shown()->loaded;
+    const ProbeGridRequest& now = session.composer.editor.scene().probes;
+    const Result<ProbeGrid> grid = fitProbeGrid({.stepMetres = now.stepMetres}, loaded.bounds, session.log());
+    if (!grid) return session.log().addError(describe(grid.error()));
+    ProbeGridRequest fitted = now;
+    fitted.position = glm::dvec3(grid->start);
+    fitted.stepMetres = glm::dvec3(grid->step);
+    fitted.count = grid->counts;
+    session.composer.tell(session.composer.editor.setProbes(fitted));
+}
+
+std::string givenText(const ProbeGridRequest& probes) {
+    std::string given;
+    if (probes.position) given += " position";
+    if (probes.stepMetres) given += " step";
+    if (probes.count) given += " counts";
+    return given.empty() ? "fitted to the scene by who bakes" : "in the file:" + given + (given.size() < 20 ? "; else fitted" : "");
+}
+
+void drawField(Session& session) {
+    const ShownProbes* const probes = session.probes();
+    ImGui::Separator();
+    if (ImGui::Button("Load ...")) session.composer.dialog = Dialog::LoadProbes;
+    if (probes == nullptr) {
+        ImGui::SameLine();
+        return note("none: probe-bake makes them");
+    }
+    ImGui::SameLine();
+    if (ImGui::Button("Drop")) return session.dropProbes();
+    ImGui::SameLine();
+    text(probes->file.filename().string());
+    std::array<std::size_t, 3> states{};
+    for (const ShownProbe& probe : probes->probes) ++states[static_cast<std::size_t>(probe.record.state)];
+    text(fmt::format("{} active, {} relocated, {} inactive", states[0], states[2], states[1]));
+    const ProbeResolution& maps = probes->info.resolution;
+    note(fmt::format("maps {} depth, {} light, {} irradiance, {}", maps.depth, maps.light, maps.irradiance,
+                     bytesText(probes->field.statistics().totalBytes())));
+    if (!probes->ofThisScene || session.composer.editor.isChanged()) note("baked for another state of the scene");
+}
+
+}  // namespace
+
+void drawProbeGrid(Session& session) {
+    SceneEditor& editor = session.composer.editor;
+    const ProbeGrid& grid = session.shown()->loaded.probes;
+    ProbeGridRequest probes = editor.scene().probes;
+    ImGui::Checkbox("show the grid (G)", &session.settings.showProbeGrid);
+    ImGui::PushItemWidth(-84.0f);
+    glm::dvec3 start = probes.position.value_or(glm::dvec3(grid.start));
+    glm::dvec3 step = probes.stepMetres.value_or(glm::dvec3(grid.step));
+    glm::uvec3 counts = probes.count.value_or(grid.counts);
+    const auto set = [&](const char* gesture) { session.composer.tell(editor.setProbes(probes, gesture)); };
+    if (dragVector("start (m)", start, {.speed = 0.02f}, editor)) {
+        probes.position = start;
+        set("start");
+    }
+    if (dragVector("step (m)", step, {.speed = 0.01f, .low = 1e-3, .high = 1e6}, editor)) {
+        probes.stepMetres = step;
+        set("step");
+    }
+    if (dragCounts("counts", counts, kMaxProbesPerAxis, editor)) {
+        probes.count = counts;
+        set("counts");
+    }
+    if (dragCounts("proximity", probes.proximityCells, 512, editor)) set("proximity");
+    ImGui::PopItemWidth();
+    if (ImGui::Button("Fit to the scene")) fitToScene(session);
+    ImGui::SameLine();
+    if (ImGui::Button("Automatic"))
+        session.composer.tell(editor.setProbes({.proximityCells = probes.proximityCells}));
+    note(fmt::format("{} probes, {}", grid.probeCount(), givenText(editor.scene().probes)));
+}
+
+void Panels::drawProbeDetail(Session& session) {
+    if (!session.selectedProbe) return note("click a probe of the grid for its figures");
+    const std::uint32_t index = *session.selectedProbe;
+    const ProbeGrid& grid = session.shown()->loaded.probes;
+    const glm::uvec3 place = grid.placeOf(index);
+    const glm::dvec3 at = session.placeOfProbe(index);
+    ImGui::Separator();
+    text(fmt::format("probe {} ({}, {}, {}) at {:.2f}, {:.2f}, {:.2f} m", index, place.x, place.y, place.z, at.x, at.y, at.z));
+    const ShownProbes* const probes = session.probes();
+    if (probes == nullptr || !(probes->info.grid == grid)) return note("not baked at this place");
+    const auto wanted = std::pair(probes->file, index);
+    if (detailOf_ != wanted) {
+        detailOf_ = wanted;
+        Result<ProbeDetail> read = readProbeDetail(probes->file, index, session.log());
+        if (!read) session.log().addError(describe(read.error()));
+        detail_ = read ? std::optional(*std::move(read)) : std::nullopt;
+    }
+    if (!detail_) return;
+    const ProbeDetail& d = *detail_;
+    text(fmt::format("{}, error {:.3f}", toString(d.record.state), d.record.error));
+    text(fmt::format("indirect mean {:.3f} {:.3f} {:.3f}", d.meanLight.r, d.meanLight.g, d.meanLight.b));
+    text(fmt::format("indirect max {:.3f} {:.3f} {:.3f}", d.maxLight.r, d.maxLight.g, d.maxLight.b));
+    if (d.minDepthMetres) text(fmt::format("nearest surface {:.3f} m", *d.minDepthMetres));
+    if (d.surfaceShare) text(fmt::format("sees surfaces in {:.0f} % of all directions", 100.0f * *d.surfaceShare));
+    const float size = std::max(40.0f, (ImGui::GetContentRegionAvail().x - 2.0f * ImGui::GetStyle().ItemSpacing.x) / 3.0f);
+    drawSmallMap("light", d.light.edge, d.light.pixels, size);
+    ImGui::SameLine();
+    drawSmallMap("normals", d.normals.edge, d.normals.pixels, size);
+    ImGui::SameLine();
+    drawSmallMap("depth", d.depth.edge, d.depth.pixels, size);
+    ImGui::NewLine();
+}
+
+void Panels::drawProbes(Session& session) {
+    const ImVec2 window = ImGui::GetIO().DisplaySize;
+    const ImVec2 place(std::max(kMargin, window.x - kPanelWidth - kMargin), 310.0f);
+    if (beginPanel("Probes", probesOpen_, place, {kPanelWidth, std::max(120.0f, window.y - 318.0f)})) {
+        if (session.shown() == nullptr) {
+            note("nothing is open");
+        } else {
+            drawProbeGrid(session);
+            drawField(session);
+            if (session.shown() != nullptr) drawProbeDetail(session);
+        }
+    }
+    ImGui::End();
+}
+
+}  // namespace pfvox::viewer

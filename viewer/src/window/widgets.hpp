@@ -1,0 +1,49 @@
+// Widgets: the few things that all panels are made of.
+#pragma once
+
+#include <imgui.h>
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <string>
+
+#include "session.hpp"
+
+namespace pfvox::viewer {
+
+inline constexpr float kMargin = 8.0f;
+inline constexpr float kMenuHeight = 20.0f;
+inline constexpr float kPanelWidth = 320.0f;
+
+void text(const std::string& line);
+/// Dimmer, for what explains.
+void note(const std::string& line);
+std::string bytesText(std::uint64_t bytes);
+
+/// Begins a panel at its first place; flags keep it from taking the keys away when it appears.
+bool beginPanel(const char* title, bool& open, ImVec2 at, ImVec2 size);
+
+/// A slider for a double.
+bool slider(const char* label, double& value, double low, double high, const char* format);
+
+/// How a field of numbers is dragged.
+struct DragRange {
+    float speed = 0.01f;
+    double low = -1e9;
+    double high = 1e9;
+    const char* format = "%.3f";
+};
+/// True while the user changes it. The step to undo ends when the field is left.
+bool dragVector(const char* label, glm::dvec3& value, const DragRange& range, SceneEditor& editor);
+bool dragNumber(const char* label, double& value, const DragRange& range, SceneEditor& editor);
+bool dragCounts(const char* label, glm::uvec3& value, std::uint32_t high, SceneEditor& editor);
+bool editColour(const char* label, glm::dvec3& value, SceneEditor& editor);
+
+/// A button or menu item that does what a key does.
+bool commandButton(Session& session, const char* label, Command command);
+void commandItem(Session& session, const char* label, Command command, bool enabled = true, bool checked = false);
+
+/// Pixels as a square of the given edge, with a name under it.
+void drawSmallMap(const char* label, std::uint32_t edge, const std::vector<std::uint32_t>& pixels, float size);
+
+}  // namespace pfvox::viewer
