@@ -126,6 +126,55 @@ TEST_F(SceneTest, EveryFiniteRayEnds) {
     }
 }
 
+// What an editor does again and again: models stay on the device, only where they stand is new.
+TEST_F(SceneTest, AModelThatIsOnTheDeviceIsTakenFromThere) {
+    const OctreeAsset room = build(demoRoom());
+    const OctreeAsset voxel = build(oneVoxel());
+    std::vector<gpu::ScenePart> parts{{.asset = &room}};
+    PFVOX_ASSERT_VALUE(const gpu::Scene, first, buildScene(parts));
+    const std::uint64_t before = device().memory().currentBytes;
+    parts[0].worldFromAsset[3] = {0, 0, -50};
+    parts.push_back({.asset = &voxel});
+    DiagnosticList diagnostics;
+    PFVOX_ASSERT_VALUE(gpu::Scene, second, gpu::Scene::build(device(), parts, diagnostics, &first));
+    PFVOX_ASSERT_VALUE(const gpu::Scene, fresh, buildScene(parts));
+    EXPECT_EQ(second.statistics().totalBytes(), fresh.statistics().totalBytes());
+    EXPECT_EQ(second.statistics().voxels, fresh.statistics().voxels);
+    EXPECT_EQ(second.statistics().materials, 7u);
+    const gpu::GpuHit hit = castOne(second, kDownZ);
+    EXPECT_TRUE(hit.hit);
+    EXPECT_EQ(hit.voxel, glm::ivec3(0));
+    Random random(21);
+    for (int i = 0; i < 40; ++i) {
+        const gpu::GpuRay ray{.origin = {3, 2, 5}, .direction = glm::vec3(random.direction())};
+        const gpu::GpuHit a = castOne(second, ray);
+        const gpu::GpuHit b = castOne(fresh, ray);
+        EXPECT_EQ(a.hit, b.hit);
+        EXPECT_TRUE(!a.hit || (a.t == b.t && a.material == b.material && a.voxel == b.voxel));
+    }
+    // Its blocks live on when the scene they were made for is gone; and materials that move are written anew.
+    std::swap(parts[0], parts[1]);
+    PFVOX_ASSERT_VALUE(gpu::Scene, third, gpu::Scene::build(device(), parts, diagnostics, &second));
+    second = std::move(third);
+    EXPECT_EQ(castOne(second, kDownZ).material, 0u);
+    const gpu::GpuRay intoRoom{.origin = {3, 2, -10}, .direction = {0, 0, -1}};
+    EXPECT_GE(castOne(second, intoRoom).material, 1u);
+    EXPECT_LT(before, device().memory().currentBytes);
+}
+
+TEST_F(SceneTest, OnlyTheTableIsNewWhenAModelMoves) {
+    const OctreeAsset room = build(demoRoom());
+    std::vector<gpu::ScenePart> parts{{.asset = &room}};
+    PFVOX_ASSERT_VALUE(const gpu::Scene, first, buildScene(parts));
+    const std::uint64_t before = device().memory().currentBytes;
+    parts[0].worldFromAsset[3].x = 1.0;
+    DiagnosticList diagnostics;
+    PFVOX_ASSERT_VALUE(const gpu::Scene, second, gpu::Scene::build(device(), parts, diagnostics, &first));
+    const std::uint64_t more = device().memory().currentBytes - before;
+    EXPECT_LT(more, first.statistics().nodeBytes + first.statistics().instanceBytes);
+    EXPECT_GE(more, second.statistics().instanceBytes);
+}
+
 TEST_F(SceneTest, EmptyScenesAreMissed) {
     const OctreeAsset nothing;
     const gpu::ScenePart part{.asset = &nothing};

@@ -1,110 +1,24 @@
-// pfview's window as a user meets it: started on a virtual screen, driven with real key and mouse events, seen, closed.
-#include <gmock/gmock.h>
-
-#include <cstdlib>
-#include <functional>
-#include <pfvox/pf_vox.hpp>
-
-#include "png.hpp"
-#include "settings.hpp"
-#include "support/image_compare.hpp"
-#include "support/procedural.hpp"
-#include "support/virtual_screen.hpp"
+// pfview's window as a user meets it: shown, turned, resized, told about broken files.
+#include "window/window_fixture.hpp"
 
 namespace pfvox::test {
 namespace {
 
 using ::testing::HasSubstr;
-using ::testing::IsEmpty;
 
 constexpr std::uint32_t kWidth = 480;
 constexpr std::uint32_t kHeight = 360;
-constexpr const char* kConfig = "pfvox/pfview.toml";
 
-/// Sky, sun and room: more than one colour.
-bool showsSomething(const viewer::Picture& picture) {
-    std::map<std::uint32_t, std::size_t> colours;
-    for (const std::uint32_t pixel : picture.pixels) ++colours[pixel];
-    return colours.size() > 200;
-}
-
-class WindowTest : public ::testing::Test {
+class WindowTest : public WindowFixture {
   protected:
+    WindowTest() : WindowFixture(kWidth, kHeight) {}
     void SetUp() override {
-        const auto xvfb = programPath("Xvfb");
-        const auto xdotool = programPath("xdotool");
-        if (!xvfb || !xdotool) GTEST_SKIP() << "Xvfb and xdotool are not installed (Debian: xvfb, xdotool)";
-        screen = std::make_unique<VirtualScreen>(*xvfb, *xdotool, kWidth, kHeight);
-        ASSERT_TRUE(screen->isThere()) << "Xvfb did not start";
+        WindowFixture::SetUp();
         // The windows of the overlay would cover the picture, and hold figures that change.
         writeText(folder / "config" / kConfig, "showWindows = false\n");
         writeRoom();
     }
-    void TearDown() override {
-        if (app) {
-            app->send(SIGKILL);
-            app->finish();
-        }
-    }
-
-    void writeRoom() const {
-        const auto bytes = encodePfVox(build(demoRoom()), EncodeSettings{});
-        ASSERT_TRUE(bytes) << describe(bytes.error());
-        writeText(folder / "room.pf_vox", {reinterpret_cast<const char*>(bytes->data()), bytes->size()});
-    }
-    void start(const std::string& file) {
-        app = std::make_unique<Process>(
-            std::vector<std::string>{PFVOX_PFVIEW, file, "--validate", "--size",
-                                     std::to_string(kWidth) + "x" + std::to_string(kHeight)},
-            ProcessSetup{.environment = {screen->environment(), "ASAN_OPTIONS=detect_leaks=0",
-                                         "XDG_CONFIG_HOME=" + (folder / "config").string(),
-                                         "XDG_STATE_HOME=" + (folder / "state").string()},
-                         .input = {},
-                         .folder = folder.path()});
-    }
-    /// Until it is so, at most half a minute.
-    bool eventually(const std::function<bool()>& isSo) const {
-        for (int i = 0; i < 150; ++i) {
-            if (isSo()) return true;
-            VirtualScreen::pause(0.2);
-        }
-        return false;
-    }
-    bool startAndSee(const std::string& file) {
-        start(file);
-        const bool seen = eventually([&] { return showsSomething(screen->picture()); });
-        screen->send({"mousemove", "460", "345"});  // over the picture's edge, and in the window for the keys
-        return seen;
-    }
-    /// Ends it as a user does; the validation layer makes the exit code 70 when it has complaints.
-    void close() {
-        screen->send({"key", "ctrl+q"});
-        const ProcessResult result = app->finish();
-        app.reset();
-        EXPECT_EQ(result.exitCode, 0) << result.err;
-        EXPECT_THAT(result.err, IsEmpty());
-        EXPECT_THAT(result.out, IsEmpty());
-    }
-    viewer::Picture screenshot(const std::string& name) {
-        screen->send({"key", "p"});
-        EXPECT_TRUE(eventually([&] { return std::filesystem::exists(folder / name); })) << name;
-        return viewer::readPng(folder / name).value_or(viewer::Picture{});
-    }
-    /// When its frames have gathered. The cursor is in the picture.
-    ::testing::AssertionResult looksLike(const std::string& golden) {
-        const ImageTolerance tolerance{.channel = 12, .pixelShare = 0.01};
-        if (std::getenv("PFVOX_UPDATE_GOLDEN") != nullptr) VirtualScreen::pause(12.0);
-        ::testing::AssertionResult result = ::testing::AssertionFailure();
-        for (int i = 0; i < 60 && !result; ++i) {
-            VirtualScreen::pause(0.5);
-            result = matchesGolden(screen->picture(), golden, tolerance);
-        }
-        return result;
-    }
-
-    TempFolder folder;
-    std::unique_ptr<VirtualScreen> screen;
-    std::unique_ptr<Process> app;
+    void writeRoom() const { write("room.pf_vox", demoRoom()); }
 };
 
 TEST_F(WindowTest, ShowsTheSceneSwitchesViewsAndCloses) {
