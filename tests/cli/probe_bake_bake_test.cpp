@@ -49,6 +49,22 @@ TEST_F(ProbeBakeScene, BakesAndLeavesAloneWhatIsUpToDate) {
     EXPECT_THAT(seeded.out, HasSubstr("changed since the last bake"));
 }
 
+TEST_F(ProbeBakeScene, ADryRunSaysWhatWouldBeBaked) {
+    writeScene("scene.toml", "box.pf_vox", kGrid);
+    const ProcessResult planned = run(tiny({"scene.toml", "-o", "out.pf_probe", "--dry-run", "--json"}));
+    ASSERT_EQ(planned.exitCode, 0) << planned.err;
+    const json report = json::parse(planned.out);
+    expectSchema("bake", report);
+    EXPECT_EQ(report["status"], "planned");
+    EXPECT_EQ(report["probes"], 18);
+    EXPECT_FALSE(std::filesystem::exists(folder / "out.pf_probe"));
+    EXPECT_FALSE(std::filesystem::exists(folder / "out.pf_probe.journal"));
+    ASSERT_EQ(run(tiny({"scene.toml", "-o", "out.pf_probe"})).exitCode, 0);
+    const ProcessResult again = run(tiny({"scene.toml", "-o", "out.pf_probe", "--dry-run"}));
+    EXPECT_THAT(again.out, HasSubstr("is up to date"));
+    EXPECT_THAT(run(tiny({"scene.toml", "-o", "out.pf_probe", "--dry-run", "--force"})).out, HasSubstr("would bake"));
+}
+
 TEST_F(ProbeBakeScene, ShardsMergeToTheWhole) {
     writeScene("scene.toml", "box.pf_vox", kGrid);
     ASSERT_EQ(run(tiny({"scene.toml", "-o", "whole.pf_probe"})).exitCode, 0);

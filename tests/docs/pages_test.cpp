@@ -168,7 +168,7 @@ TEST_F(Completion, BashOffersValuesThatAreKnownWords) {
 TEST_F(Completion, BashKnowsTheOtherTools) {
     for (const std::string& tool : builtTools()) {
         if (tool == "pfview") {
-            EXPECT_THAT(bash({"pfview", ""}), UnorderedElementsAre("assets", "b b.pf_vox", "scene.toml"));
+            EXPECT_THAT(bash({"pfview", ""}), UnorderedElementsAre("assets", "b b.pf_vox", "c.pf_probe", "scene.toml"));
             EXPECT_THAT(bash({"pfview", "scene.toml", "--screenshot", ""}), UnorderedElementsAre("assets", "d.png"));
             EXPECT_THAT(bash({"pfview", "scene.toml", "--view", "nor"}), UnorderedElementsAre("normals"));
         } else if (tool == "probe-bake") {

@@ -166,9 +166,12 @@ TEST_F(SceneTest, OnlyTheTableIsNewWhenAModelMoves) {
     const OctreeAsset room = build(demoRoom());
     std::vector<gpu::ScenePart> parts{{.asset = &room}};
     PFVOX_ASSERT_VALUE(const gpu::Scene, first, buildScene(parts));
-    const std::uint64_t before = device().memory().currentBytes;
     parts[0].worldFromAsset[3].x = 1.0;
     DiagnosticList diagnostics;
+    for (int i = 0; i < 4; ++i) {  // staging memory grows at first and stays
+        PFVOX_ASSERT_VALUE(const gpu::Scene, warm, gpu::Scene::build(device(), parts, diagnostics, &first));
+    }
+    const std::uint64_t before = device().memory().currentBytes;
     PFVOX_ASSERT_VALUE(const gpu::Scene, second, gpu::Scene::build(device(), parts, diagnostics, &first));
     const std::uint64_t more = device().memory().currentBytes - before;
     EXPECT_LT(more, first.statistics().nodeBytes + first.statistics().instanceBytes);

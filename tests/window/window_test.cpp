@@ -87,8 +87,8 @@ TEST_F(WindowTest, WindowsHelpAndMessagesAreShown) {
 
 TEST_F(WindowTest, ResizingIsSurvived) {
     ASSERT_TRUE(startAndSee("room.pf_vox"));
-    for (const auto& [width, height] : {std::pair("300", "200"), std::pair("77", "355"), std::pair("480", "360")}) {
-        screen->send({"search", "--name", "pfview", "windowsize", width, height});
+    for (const auto& [columns, rows] : {std::pair("300", "200"), std::pair("77", "355"), std::pair("480", "360")}) {
+        screen->send({"search", "--name", "pfview", "windowsize", columns, rows});
         VirtualScreen::pause(1.0);
     }
     screen->send({"search", "--name", "pfview", "windowunmap"});

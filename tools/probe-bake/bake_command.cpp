@@ -179,8 +179,15 @@ class BakeRun {
         PFVOX_TRY(gpu::Device, device, gpu::Device::open({.selector = options_.device, .memoryBytes = options_.deviceMemoryMiB << 20}));
         outcome_.device = device.info().name;
         const Existing existing = inspect(options_, limits_);
-        outcome_.reason = reasonFor(options_, existing, bakeContentKey(scene, *settings, device.info()),
-                                    settings->range.value_or(ProbeRange{0, static_cast<std::uint32_t>(scene.probes.probeCount())}));
+        const ContentKey key = bakeContentKey(scene, *settings, device.info());
+        const ProbeRange range = settings->range.value_or(ProbeRange{0, static_cast<std::uint32_t>(scene.probes.probeCount())});
+        outcome_.reason = reasonFor(options_, existing, key, range);
+        if (options_.dryRun) {
+            outcome_.planned = true;
+            outcome_.report.probes = range.size();
+            outcome_.report.upToDate = !options_.force && existing.key == key && existing.range == range;
+            return {};
+        }
         ToolObserver observer(reporter_, options_.output);
         auto report = bakeProbes(device, scene, *settings, options_.output, observer, diagnostics);
         last_ = observer.last();

@@ -123,6 +123,7 @@ void addBakeOptions(CLI::App& command, BakeOptions& options) {
         ->check(suggestFiles({kPfProbeExtension}))
         ->group(group::kInputOutput);
     command.add_flag("--force", options.force, "bake what is up to date, too")->group(group::kInputOutput);
+    command.add_flag("--dry-run", options.dryRun, "write nothing, say what would be baked")->group(group::kInputOutput);
     command.add_flag("--explain", options.explain, "say why it is baked or not")->group(group::kInputOutput);
     addLightOptions(command, options);
     addRunOptions(command, options);

@@ -26,6 +26,7 @@ struct BakeOptions {
     std::uint64_t deviceMemoryMiB = 0;
     std::string depfile;
     bool listDevices = false;
+    bool dryRun = false;
     bool resume = false;
     bool filter = true;
     bool relocate = true;

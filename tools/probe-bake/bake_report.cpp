@@ -17,7 +17,7 @@ double raysPerSecond(const BakePass& pass) {
 Json passJson(const BakePass& pass) { return {{"rays", pass.rays}, {"gpuMs", pass.gpuMs}}; }
 
 const char* statusOf(const BakeOutcome& outcome) {
-    if (!outcome.error) return outcome.report.upToDate ? "up-to-date" : "baked";
+    if (!outcome.error) return outcome.report.upToDate ? "up-to-date" : outcome.planned ? "planned" : "baked";
     return outcome.error->code == ErrorCode::Cancelled ? "interrupted" : "failed";
 }
 
@@ -45,6 +45,9 @@ std::string bakeText(const BakeOutcome& outcome, bool explain) {
     const BakeReport& report = outcome.report;
     const std::string why = explain ? ": " + outcome.reason : "";
     if (report.upToDate) return fmt::format("{} is up to date{}\n", outcome.output, why);
+    if (outcome.planned)
+        return fmt::format("would bake {} -> {}: {} on {}: {}\n", outcome.input, outcome.output,
+                           plural(report.probes, "probe"), outcome.device, outcome.reason);
     std::string text = fmt::format("baked {} -> {}: {}, {} in {}{}\n", outcome.input, outcome.output,
                                    plural(report.probes, "probe"), formatBytes(report.fileBytes),
                                    formatDuration(report.totalMs * 1e-3), why);

@@ -12,6 +12,7 @@ namespace pfvox::tools {
 
 /// What came of one bake.
 struct BakeOutcome {
+    bool planned = false;  ///< --dry-run: of the report, `probes` and `upToDate` count
     std::string input;
     std::string output;
     std::string device;
