@@ -103,7 +103,7 @@ vec3 referenceLight(BakeScene bake, vec3 origin, vec3 normal, vec2 first) {
     vec3 total = emitterAt(bake, white, origin, normal, normal, counts);
     uint bounces = 0u;
     for (uint step = 0u; step < kMaxReferenceSteps; ++step) {
-        Hit hit = castThroughGlass(scene, path.ray, path.lastGlass, counts);
+        Hit hit = castRay(scene, path.ray, counts);
         if (hit.instance == kNoInstance) return total + path.throughput * skyRadiance(bake, path.ray.direction);
         Surface surface = surfaceOf(scene, path.ray, hit);
         MaterialRecord material = materialOf(scene, surface);
