@@ -1,4 +1,4 @@
-// Paths of a wave: their random numbers, emitters as light sources, and the queues that their rays wait in.
+// Paths of a wave: their random numbers, their rays to emitters, and the queues that rays wait in.
 #ifndef PFVOX_BAKE_PATHS_GLSL
 #define PFVOX_BAKE_PATHS_GLSL
 
@@ -7,6 +7,7 @@
 
 #include "shared/sampling.glsl.h"
 #include "bake_wave.glsl"
+#include "emitters.glsl"
 
 // Pairs of random numbers that a vertex has.
 const uint kPairDirection = 0u;
@@ -21,50 +22,6 @@ layout(constant_id = 3) const uint kStratifiedVertices = 2u;
 vec2 randomPair(uint key, uint vertex, uint pair, uint index) {
     uint pairKey = joinHash(key, vertex * kPairsPerVertex + pair);
     return vertex < kStratifiedVertices ? sobolPair(pairKey, index) : hashPair(pairKey, index);
-}
-
-// --- Emitters ---
-
-bool looksForEmitters(BakeScene bake) { return bake.emitterCount != 0u && bake.sampling != kSampleDirections; }
-
-float emitterWeight(float density, float otherDensity) { return density / (density + otherDensity); }
-
-EmitterFace pickEmitter(BakeScene bake, float u) {
-    float scaled = u * float(bake.emitterCount);
-    uint slot = min(uint(scaled), bake.emitterCount - 1u);
-    EmitterFace face = Emitters(bake.emitters).at[slot];
-    if (scaled - float(slot) < face.threshold) return face;
-    return Emitters(bake.emitters).at[face.alias];
-}
-
-// Where light is looked for: `toLight` unit, `radiance` 0 where nothing comes.
-struct EmitterSample {
-    vec3 toLight;
-    float density;  // per steradian
-    vec3 radiance;
-    vec3 end;       // of the shadow ray
-};
-
-EmitterSample sampleEmitter(BakeScene bake, vec3 origin, float pick, vec2 u) {
-    EmitterFace face = pickEmitter(bake, pick);
-    vec3 outward = cross(face.edgeU, face.edgeV);
-    float area = length(outward);
-    outward /= area;
-    vec3 point = face.corner + u.x * face.edgeU + u.y * face.edgeV;
-    vec3 away = point - origin;
-    float squared = dot(away, away);
-    EmitterSample found;
-    found.toLight = away * inversesqrt(max(squared, 1e-30));
-    float cosine = -dot(outward, found.toLight);
-    found.radiance = cosine > 0.0 && squared > 0.0 ? face.radiance : vec3(0.0);
-    found.density = meanOf(face.radiance) / bake.emitterPower * squared / max(cosine, 1e-12);
-    found.end = point + face.offset * outward;
-    return found;
-}
-
-// Density with which sampleEmitter finds the emitter that a path has run into.
-float densityOfEmitter(BakeScene bake, vec3 emission, float metres, float cosine) {
-    return meanOf(emission) / bake.emitterPower * metres * metres / max(cosine, 1e-12);
 }
 
 // The ray to one emitter, with its light as the lobes reflect it; light 0 where there is none.

@@ -12,7 +12,6 @@
 layout(constant_id = 0) const uint kHasGlass = 0u;
 
 layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer BakeScenes { BakeScene at[]; };
-layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer Emitters { EmitterFace at[]; };
 
 struct RayCounts {
     uint rays;

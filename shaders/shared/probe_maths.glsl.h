@@ -41,6 +41,7 @@ PFVOX_CONSTANT(float, kSurfaceSlackMetres, 0.01f);
 PFVOX_CONSTANT(float, kSurfaceSlackTexels, 0.75f);
 PFVOX_CONSTANT(float, kSurfaceMinCosine, 0.05f);
 PFVOX_CONSTANT(float, kSurfaceMinNormalDot, 0.9f);
+PFVOX_CONSTANT(float, kSurfaceMinAgreement, 0.45f);  // of the bilinear weights of four texels
 
 // ---- Octahedral mapping ----
 

@@ -32,7 +32,7 @@ PFVOX_STRUCT(VerifyView) {
 PFVOX_SIZE(VerifyView, 64);
 
 PFVOX_STRUCT(VerifyPush) {
-    uvec2 scene;   // BakeScene, without emitters: the reference finds them by running into them
+    uvec2 scene;   // BakeScene
     uvec2 field;   // ProbeFieldRecord
     uvec2 view;
     uvec2 pixels;  // VerifyPixel[]

@@ -1,6 +1,7 @@
 // Octahedral maps, packs, depth codes and borders: the table of docs/format-pf_probe.md, checked.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <numbers>
@@ -263,6 +264,35 @@ TEST(ProbeMaths, SurfaceTestTakesWhatATexelCanSee) {
     // Another surface.
     EXPECT_FALSE(sees(5, {0, 1, 0}, facing));
     EXPECT_FALSE(seesSurface(packDepthNormal(kDepthMissCode, facing), toPoint, facing, 1024, coder));
+}
+
+TEST(ProbeMaths, AMapSeesWhatNearlyHalfOfItsTexelsAroundSee) {
+    const DepthCoder coder({.scale = 50, .farMetres = 20});
+    constexpr std::uint32_t kEdge = 16;
+    // The way back from there is where the map's border is crossed.
+    for (const glm::vec3 toPoint : {glm::vec3{1, 2, 3}, glm::vec3{2, -1, -4}, glm::vec3{0.01f, 0.02f, -5}}) {
+        const glm::vec3 normal = -glm::normalize(toPoint);
+        const std::uint32_t same = packDepthNormal(coder.encode(glm::length(toPoint)), normal);
+        const std::uint32_t nothing = packDepthNormal(kDepthMissCode, normal);
+        std::vector<std::uint32_t> words(kEdge * kEdge, same);
+        EXPECT_TRUE(mapSeesSurface(words, toPoint, normal, kEdge, coder));
+        EXPECT_FALSE(mapSeesSurface(words, toPoint, -normal, kEdge, coder));
+        // Without the texel that it falls into, whose weight is a quarter at least.
+        words[texelIndex(toPoint, kEdge)] = nothing;
+        const glm::vec2 at = (octEncode(toPoint) * 0.5f + 0.5f) * static_cast<float>(kEdge);
+        const glm::vec2 off = glm::abs(glm::fract(at) - 0.5f);
+        EXPECT_EQ(mapSeesSurface(words, toPoint, normal, kEdge, coder), (1 - off.x) * (1 - off.y) <= 0.55f);
+        std::ranges::fill(words, nothing);
+        EXPECT_FALSE(mapSeesSurface(words, toPoint, normal, kEdge, coder));
+    }
+    // At the edge of the net the other texel of a pair is the mirrored one: the whole weight, not half.
+    const glm::vec3 low = octDecode({-0.3f, -0.999f});
+    std::vector<std::uint32_t> words(kEdge * kEdge, packDepthNormal(coder.encode(3.0f), -low));
+    EXPECT_TRUE(mapSeesSurface(words, 3.0f * low, -low, kEdge, coder));
+    for (std::uint32_t x = 0; x < kEdge / 2; ++x) words[x] = packDepthNormal(kDepthMissCode, low);
+    EXPECT_TRUE(mapSeesSurface(words, 3.0f * low, -low, kEdge, coder));
+    for (std::uint32_t x = 0; x < kEdge; ++x) words[x] = packDepthNormal(kDepthMissCode, low);
+    EXPECT_FALSE(mapSeesSurface(words, 3.0f * low, -low, kEdge, coder));
 }
 
 TEST(ProbeMaths, FarIsTheDiagonalOfTheScene) {

@@ -13,7 +13,7 @@ namespace pfvox::tools {
 namespace {
 
 /// Changes with everything that makes references differ and is not in the line.
-constexpr int kReferenceVersion = 1;
+constexpr int kReferenceVersion = 2;
 constexpr std::uint64_t kMaxReferenceBytes = std::uint64_t{1} << 31;
 
 std::string hexOf(const ContentKey& key) {

@@ -21,6 +21,7 @@ struct VerifySettings {
     std::uint32_t height = 180;         ///< pixels
     std::uint32_t samples = 1024;       ///< paths a pixel of the reference
     std::uint32_t maxBounces = 128;     ///< as the field was baked
+    bool emitterSampling = true;        ///< else emissive voxels are found by running into them only: the same mean, far more noise
 };
 
 /// Sums of I over the samples of even and of odd number; w: how many. Rows from the top.

@@ -3,6 +3,7 @@
 #include <pfvox/verify.hpp>
 #include <pfvox_shaders/shaders.hpp>
 
+#include "bake/emitters.hpp"
 #include "shared/bake.glsl.h"
 #include "shared/verify.glsl.h"
 
@@ -31,13 +32,31 @@ shared::VerifyView viewOf(const Camera& camera, const VerifySettings& settings) 
             .reserved1 = 0};
 }
 
-shared::BakeScene bakeSceneOf(const VerifyInput& input, const VerifySettings& settings) {
+/// What paths look for; nothing where they do not.
+struct Lamps {
+    gpu::Buffer faces;
+    std::uint32_t count = 0;
+    float power = 0.0f;
+
+    static Result<Lamps> create(gpu::Device& device, const bake::EmitterList& list) {
+        const auto count = static_cast<std::uint32_t>(list.faces.size());
+        const std::uint64_t bytes = std::uint64_t{std::max(count, 1u)} * sizeof(shared::EmitterFace);
+        PFVOX_TRY(gpu::Buffer, faces, device.createBuffer(bytes, "verify emitters"));
+        if (count != 0) PFVOX_CHECK(device.upload(faces, 0, std::as_bytes(std::span(list.faces))));
+        return Lamps{std::move(faces), count, list.power};
+    }
+};
+
+shared::BakeScene bakeSceneOf(const VerifyInput& input, const VerifySettings& settings, const Lamps& lamps) {
     const Sun& sun = input.loaded.scene.sun;
     const Sky& sky = input.loaded.scene.sky;
     shared::BakeScene record{};
     record.scene = input.scene.address();
+    record.emitters = lamps.faces.addressWords();
+    record.emitterCount = lamps.count;
+    record.emitterPower = lamps.power;
     record.maxBounces = settings.maxBounces;
-    record.sampling = shared::kSampleDirections;
+    record.sampling = lamps.count != 0 ? shared::kSampleCombined : shared::kSampleDirections;
     record.sunDirection = glm::vec3{glm::normalize(sun.direction)};
     record.sunIrradiance = glm::vec3{sun.irradiance};
     record.skyZenith = glm::vec3{sky.zenith};
@@ -62,17 +81,20 @@ std::uint32_t groupsOf(std::uint32_t edge) { return (edge + shared::kVerifyGroup
 
 /// What a picture needs on the device.
 struct Canvas {
+    Lamps lamps;
     gpu::Buffer scene;
     gpu::Buffer view;
     gpu::Buffer pixels;
     shared::VerifyPush push;
 
-    static Result<Canvas> create(gpu::Device& device, const VerifyInput& input, const VerifySettings& settings) {
+    static Result<Canvas> create(gpu::Device& device, const VerifyInput& input, const VerifySettings& settings,
+                                 const bake::EmitterList& emitters) {
+        PFVOX_TRY(Lamps, lamps, Lamps::create(device, emitters));
         const std::uint64_t bytes = std::uint64_t{settings.width} * settings.height * sizeof(shared::VerifyPixel);
         PFVOX_TRY(gpu::Buffer, scene, device.createBuffer(sizeof(shared::BakeScene), "verify scene"));
         PFVOX_TRY(gpu::Buffer, view, device.createBuffer(sizeof(shared::VerifyView), "verify view"));
         PFVOX_TRY(gpu::Buffer, pixels, device.createBuffer(bytes, "verify pixels"));
-        PFVOX_CHECK(device.upload(scene, 0, gpu::bytesOf(bakeSceneOf(input, settings))));
+        PFVOX_CHECK(device.upload(scene, 0, gpu::bytesOf(bakeSceneOf(input, settings, lamps))));
         PFVOX_CHECK(device.upload(view, 0, gpu::bytesOf(viewOf(input.camera, settings))));
         const shared::VerifyPush push{.scene = scene.addressWords(),
                                       .field = input.probes.address(),
@@ -82,7 +104,7 @@ struct Canvas {
                                       .sampleCount = 0,
                                       .firstRow = 0,
                                       .reserved0 = 0};
-        return Canvas{std::move(scene), std::move(view), std::move(pixels), push};
+        return Canvas{std::move(lamps), std::move(scene), std::move(view), std::move(pixels), push};
     }
 
     Result<double> launch(gpu::Device& device, const gpu::Program& program, glm::uvec2 size) const {
@@ -110,7 +132,9 @@ Result<ProbeVerifier> ProbeVerifier::create(gpu::Device& device) {
 
 Result<ReferencePicture> ProbeVerifier::trace(gpu::Device& device, const VerifyInput& input,
                                               const VerifySettings& settings) const {
-    PFVOX_TRY(Canvas, canvas, Canvas::create(device, input, settings));
+    bake::EmitterList emitters;
+    if (settings.emitterSampling) emitters = bake::makeEmitters(bake::placedModels(input.loaded));
+    PFVOX_TRY(Canvas, canvas, Canvas::create(device, input, settings, emitters));
     const std::vector<shared::VerifyPixel> none(std::size_t{settings.width} * settings.height);
     PFVOX_CHECK(device.upload(canvas.pixels, 0, std::as_bytes(std::span(none))));
     ReferencePicture picture{.width = settings.width, .height = settings.height, .even = {}, .odd = {}};
@@ -135,7 +159,7 @@ Result<ReferencePicture> ProbeVerifier::trace(gpu::Device& device, const VerifyI
 Result<VerifiedPicture> ProbeVerifier::lookUp(gpu::Device& device, const VerifyInput& input,
                                               const ReferencePicture& reference) const {
     const VerifySettings settings{.width = reference.width, .height = reference.height};
-    PFVOX_TRY(const Canvas, canvas, Canvas::create(device, input, settings));
+    PFVOX_TRY(const Canvas, canvas, Canvas::create(device, input, settings, {}));
     VerifiedPicture picture{.width = reference.width, .height = reference.height, .pixels = {}};
     PFVOX_TRY(const double, gpuMs, canvas.launch(device, program_, {reference.width, reference.height}));
     picture.gpuMs = gpuMs;

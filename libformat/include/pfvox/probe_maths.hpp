@@ -6,6 +6,7 @@
 #pragma once
 
 #include <pfvox/pf_probe.hpp>
+#include <span>
 
 namespace pfvox {
 
@@ -58,5 +59,9 @@ glm::vec2 unpackMoments(std::uint32_t word);  ///< mean of d, mean of d^2
 /// `toPoint` leads from the probe, which must be active, to the point.
 bool seesSurface(std::uint32_t word, glm::vec3 toPoint, glm::vec3 normal, std::uint32_t edge,
                  const DepthCoder& coder);
+/// Whether a depth map sees a surface point: of the four texels around its direction, those that see it
+/// (seesSurface) have at least 0.45 of the bilinear weight. `words` are the edge^2 of the map, row by row.
+bool mapSeesSurface(std::span<const std::uint32_t> words, glm::vec3 toPoint, glm::vec3 normal,
+                    std::uint32_t edge, const DepthCoder& coder);
 
 }  // namespace pfvox

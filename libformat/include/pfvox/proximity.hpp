@@ -3,8 +3,8 @@
 //     surface samples -> CellSurfaces; depth-normal maps -> [buildProximityGrid] -> ProximityGrid
 //
 // Candidates of a cell are the active probes within two diagonals of the probe grid's cell. Its samples are
-// surface points and its eight corners. A probe sees a surface point when its texel there agrees in distance
-// and normal (seesSurface), and a corner when its texel there sees nothing nearer. The first probe of a cell
+// surface points and its eight corners. A probe sees a surface point when its texels around agree in distance
+// and normal (mapSeesSurface), and a corner when its texel there sees nothing nearer. The first probe of a cell
 // is the one that sees most samples, each next one the one that sees most of those that no earlier one sees;
 // of equals the one with more texels a square metre there, then the one with the smaller index. Cells without
 // surface name no probe.

@@ -64,4 +64,22 @@ bool seesSurface(std::uint32_t word, glm::vec3 toPoint, glm::vec3 normal, std::u
     return shared::seesSurface(word, toPoint, normal, edge, coder.scaleAndLogRange());
 }
 
+bool mapSeesSurface(std::span<const std::uint32_t> words, glm::vec3 toPoint, glm::vec3 normal,
+                    std::uint32_t edge, const DepthCoder& coder) {
+    const int last = static_cast<int>(edge) - 1;
+    const glm::vec2 at = shared::texelCoordinate(toPoint, edge) - 0.5f;
+    const glm::ivec2 low = glm::clamp(glm::ivec2{glm::floor(at)}, -1, last);
+    const glm::vec2 fraction = glm::clamp(at - glm::vec2{low}, 0.0f, 1.0f);
+    float agreement = 0;
+    for (int i = 0; i < 4; ++i) {
+        const glm::ivec2 upper{i & 1, i >> 1};
+        // Coordinates of a map with border.
+        const glm::uvec2 texel{shared::borderSource(low + upper + 1, last + 1)};
+        if (!seesSurface(words[texel.x + edge * texel.y], toPoint, normal, edge, coder)) continue;
+        const glm::vec2 near = glm::mix(1.0f - fraction, fraction, glm::vec2{upper});
+        agreement += near.x * near.y;
+    }
+    return agreement >= shared::kSurfaceMinAgreement;
+}
+
 }  // namespace pfvox

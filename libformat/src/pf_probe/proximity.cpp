@@ -55,8 +55,7 @@ class Eye {
 
     bool seesSample(const SurfaceSample& sample) const {
         const glm::vec3 toPoint = sample.position - position_;
-        return toPoint != glm::vec3{0} &&
-               seesSurface(wordTowards(toPoint), toPoint, sample.normal, edge_, coder_);
+        return toPoint != glm::vec3{0} && mapSeesSurface(words_, toPoint, sample.normal, edge_, coder_);
     }
 
     bool seesCorner(glm::vec3 corner) const {

@@ -1,0 +1,221 @@
+// A ray through what one probe sees (McGuire et al. 2017, "Real-Time Global Illumination using Precomputed Light Field
+// Probes").
+//
+//     traceProbe -> segments -> texels
+//
+// Between two planes through the probe a ray stays in one octant, where the octahedral map is a perspective projection:
+// there the ray is a straight line, and its parameter t is the perspective-correct interpolation of those at the ends
+// of the segment. Texels are visited one by one along that line (Amanatides and Woo 1987), those of the min map first and
+// those below one only where its nearest surface is nearer than the ray. A walk never turns back, so it ends.
+//
+// A miss is certain: the probe has seen past all of the ray. A hit is right up to the thickness that surfaces are given.
+// Unknown: the ray goes behind what the probe sees.
+#ifndef PFVOX_PROBE_WALK_GLSL
+#define PFVOX_PROBE_WALK_GLSL
+
+#include "probe_field.glsl"
+
+const float kDegenerateVoxels = 0.03;  // shorter pieces of a ray are left out
+
+struct FieldHit {
+    uint state;   // kField...
+    float t;
+    vec3 normal;
+    uint probe;
+    uint texel;   // word of its depth map
+};
+
+struct FieldStatistics {
+    uint lowSteps;
+    uint highSteps;
+    uint probes;
+    uint capped;  // walks that were given up
+};
+
+struct FieldRay {
+    vec3 origin;
+    vec3 direction;  // unit
+    float tMax;
+    bool highOnly;   // without the min maps
+};
+
+// A piece of a ray in one octant of a probe; s runs from 0 to 1 along its line on the map.
+struct FieldSegment {
+    vec3 origin;     // relative to the probe
+    vec3 direction;
+    vec2 start;      // on the map, [0, 1]^2
+    vec2 line;       // to the end
+    float t0;
+    float t1;
+    float inverseNorm0;  // 1 / (|x| + |y| + |z|) at the ends
+    float inverseNorm1;
+};
+
+float timeAt(FieldSegment segment, float s) {
+    float a = (1.0 - s) * segment.inverseNorm0;
+    float b = s * segment.inverseNorm1;
+    return (segment.t0 * a + segment.t1 * b) / (a + b);
+}
+
+float distanceAt(FieldSegment segment, float t) { return length(segment.origin + t * segment.direction); }
+
+// On the map, in an octant that is known: no side to choose where a component is 0.
+vec2 mapInOctant(vec3 v, vec3 octant, out float inverseNorm) {
+    vec3 p = max(v * octant, vec3(0.0));
+    inverseNorm = 1.0 / max(p.x + p.y + p.z, 1e-20);
+    p *= inverseNorm;
+    vec2 o = octant.z > 0.0 ? p.xy : 1.0 - p.yx;
+    return o * octant.xy * 0.5 + 0.5;
+}
+
+FieldSegment makeSegment(vec3 origin, vec3 direction, float t0, float t1) {
+    vec3 middle = origin + 0.5 * (t0 + t1) * direction;
+    vec3 octant = vec3(signNotZero(middle.x), signNotZero(middle.y), signNotZero(middle.z));
+    vec3 start = origin + t0 * direction;
+    vec3 end = origin + t1 * direction;
+    // At the probe itself any direction will do but none.
+    float tiny = 1e-6 * (1.0 + abs(t1 - t0));
+    if (dot(start, start) < tiny * tiny) start = tiny * direction;
+    if (dot(end, end) < tiny * tiny) end = -tiny * direction;
+    FieldSegment segment;
+    segment.origin = origin;
+    segment.direction = direction;
+    segment.t0 = t0;
+    segment.t1 = t1;
+    segment.start = mapInOctant(start, octant, segment.inverseNorm0);
+    segment.line = mapInOctant(end, octant, segment.inverseNorm1) - segment.start;
+    return segment;
+}
+
+// A walk over the texels of one edge along a line.
+struct TexelWalk {
+    ivec2 texel;
+    vec2 next;   // s at which the line leaves the texel, along each axis
+    vec2 perTexel;
+    ivec2 way;
+    float s;     // where it entered
+};
+
+TexelWalk beginTexelWalk(FieldSegment segment, float s, uint edge) {
+    TexelWalk walk;
+    vec2 at = (segment.start + s * segment.line) * float(edge);
+    walk.texel = clamp(ivec2(floor(at)), ivec2(0), ivec2(edge - 1u));
+    walk.way = ivec2(segment.line.x >= 0.0 ? 1 : -1, segment.line.y >= 0.0 ? 1 : -1);
+    vec2 pace = max(abs(segment.line) * float(edge), vec2(1e-20));
+    walk.perTexel = 1.0 / pace;
+    vec2 start = segment.start * float(edge);
+    vec2 border = vec2(walk.texel + max(walk.way, ivec2(0)));
+    walk.next = abs(border - start) * walk.perTexel;
+    walk.s = s;
+    return walk;
+}
+
+float exitOf(TexelWalk walk, float last) { return clamp(min(walk.next.x, walk.next.y), walk.s, last); }
+
+// Ends of a line may lie on the border of the map; rounding must not lead over it.
+void stepTexel(inout TexelWalk walk, float exit, uint edge) {
+    walk.s = exit;
+    int axis = walk.next.x <= walk.next.y ? 0 : 1;
+    int texel = walk.texel[axis] + walk.way[axis];
+    bool inside = texel >= 0 && texel < int(edge);
+    if (inside) walk.texel[axis] = texel;
+    walk.next[axis] = inside ? walk.next[axis] + walk.perTexel[axis] : 1e30;
+}
+
+uint minCodeAt(ProbeEntry probe, ivec2 texel, uint edge) {
+    uint index = uint(texel.x) + edge * uint(texel.y);
+    return ProbeWords(probe.minDepth).at[index >> 1] >> ((index & 1u) * 16u) & 0xffffu;
+}
+
+// The texels between two places of a line. A miss is one of this piece only.
+uint traceTexels(ProbeFieldRecord field, ProbeEntry probe, FieldSegment segment, vec2 span, inout float tMin,
+                 inout FieldHit hit, inout FieldStatistics statistics) {
+    uint edge = field.depthEdge;
+    TexelWalk walk = beginTexelWalk(segment, span.x, edge);
+    float tBefore = timeAt(segment, span.x);
+    float before = distanceAt(segment, tBefore);
+    for (uint step = 0u; step < 2u * edge + 2u; ++step) {
+        ++statistics.highSteps;
+        float exit = exitOf(walk, span.y);
+        float tAfter = timeAt(segment, exit);
+        float after = distanceAt(segment, tAfter);
+        uint index = uint(walk.texel.x) + edge * uint(walk.texel.y);
+        uint word = ProbeWords(probe.depthNormal).at[index];
+        float depth = metresOfCode(field, depthCodeOf(word));
+        if (max(before, after) >= depth) {
+            vec3 normal = normalOf(word);
+            vec3 view = directionOfTexel(uint(walk.texel.x), uint(walk.texel.y), edge);
+            float along = dot(depth * view - segment.origin, segment.direction);
+            float thickness = field.thickness + surfaceTolerance(depth, dot(view, normal), edge);
+            if (min(before, after) < depth + thickness && dot(normal, segment.direction) < 0.0) {
+                // Where the ray meets the plane that the texel shows, but not far from the texel.
+                float onPlane = dot(depth * view - segment.origin, normal) / dot(segment.direction, normal);
+                along = clamp(onPlane, min(tBefore, along - thickness), max(tAfter, along + thickness));
+                hit.state = kFieldHit;
+                hit.t = max(along, 0.0);
+                hit.normal = normal;
+                hit.texel = index;
+                return kFieldHit;
+            }
+            tMin = max(tMin, min(along, tBefore));
+            return kFieldUnknown;
+        }
+        if (exit >= span.y) return kFieldMiss;
+        stepTexel(walk, exit, edge);
+        tBefore = tAfter;
+        before = after;
+    }
+    ++statistics.capped;
+    return kFieldUnknown;
+}
+
+uint traceSegment(ProbeFieldRecord field, ProbeEntry probe, FieldSegment segment, bool highOnly, inout float tMin,
+                  inout FieldHit hit, inout FieldStatistics statistics) {
+    if (highOnly) return traceTexels(field, probe, segment, vec2(0.0, 1.0), tMin, hit, statistics);
+    uint edge = field.depthEdge / kMinDepthBlock;
+    TexelWalk walk = beginTexelWalk(segment, 0.0, edge);
+    float before = distanceAt(segment, segment.t0);
+    for (uint step = 0u; step < 2u * edge + 2u; ++step) {
+        ++statistics.lowSteps;
+        float exit = exitOf(walk, 1.0);
+        float after = distanceAt(segment, timeAt(segment, exit));
+        // The distance is convex along a line, so within the texel none is larger than at its ends.
+        if (max(before, after) >= metresOfCode(field, minCodeAt(probe, walk.texel, edge))) {
+            uint state = traceTexels(field, probe, segment, vec2(walk.s, exit), tMin, hit, statistics);
+            if (state != kFieldMiss) return state;
+        }
+        if (exit >= 1.0) return kFieldMiss;
+        stepTexel(walk, exit, edge);
+        before = after;
+    }
+    ++statistics.capped;
+    return kFieldUnknown;
+}
+
+// Where the ray passes the three planes through the probe, in order, within [tMin, tMax].
+vec3 octantBorders(vec3 origin, vec3 direction, float tMin, float tMax) {
+    vec3 t = vec3(tMax);
+    for (int axis = 0; axis < 3; ++axis)
+        if (abs(direction[axis]) > 1e-12) t[axis] = clamp(-origin[axis] / direction[axis], tMin, tMax);
+    if (t.x > t.y) t.xy = t.yx;
+    if (t.y > t.z) t.yz = t.zy;
+    if (t.x > t.y) t.xy = t.yx;
+    return t;
+}
+
+uint traceProbe(ProbeFieldRecord field, ProbeEntry probe, FieldRay ray, inout float tMin, inout FieldHit hit,
+                inout FieldStatistics statistics) {
+    ++statistics.probes;
+    vec3 origin = ray.origin - probe.position;
+    vec3 borders = octantBorders(origin, ray.direction, tMin, ray.tMax);
+    float ends[5] = float[5](tMin, borders.x, borders.y, borders.z, ray.tMax);
+    for (int i = 0; i < 4; ++i) {
+        if (ends[i + 1] - ends[i] < kDegenerateVoxels * field.voxelMetres) continue;
+        FieldSegment segment = makeSegment(origin, ray.direction, ends[i], ends[i + 1]);
+        uint state = traceSegment(field, probe, segment, ray.highOnly, tMin, hit, statistics);
+        if (state != kFieldMiss) return state;
+    }
+    return kFieldMiss;
+}
+
+#endif
