@@ -102,6 +102,7 @@ vec3 transmittance(Scene sceneBuffer, Ray ray, inout RayCounts counts) {
 
 // True when a walk that begins in glass of this material has come to something else; false when it has ended there.
 bool leaveGlass(Scene scene, uint instance, Ray ray, uint glass, inout Walk walk) {
+    if (walk.tEnter > 0.0) return true;  // it begins elsewhere
     for (uint i = 0u; i < kMaxTraceSteps; ++i) {
         Walk ahead = walk;
         if (stepWalk(ahead) != kWalkHit) return true;

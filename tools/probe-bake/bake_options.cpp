@@ -75,7 +75,7 @@ void addLightOptions(CLI::App& command, BakeOptions& options) {
     command.add_option("--seed", options.seed, "of the random numbers (default 0)")->option_text("N")->group(kBaking);
     command
         .add_flag("--filter,!--no-filter", options.filter,
-                  "take noise out of the light maps (default); else each texel has its own paths only")
+                  "take noise out of the light maps (default but for thesis); else a texel has its own paths only")
         ->group(kBaking);
     command
         .add_flag("--relocate,!--no-relocate", options.relocate,
@@ -196,7 +196,7 @@ tl::expected<BakeSettings, std::string> settingsOf(const BakeOptions& options, s
     if (options.noise) settings.noiseTarget = static_cast<float>(*options.noise);
     settings.maxBounces = options.bounces;
     settings.seed = options.seed;
-    settings.filter = options.filter;
+    settings.filter = options.filter.value_or(options.profile != "thesis");
     settings.relocate = options.relocate;
     settings.resume = options.resume;
     settings.force = options.force;

@@ -28,7 +28,7 @@ struct BakeOptions {
     bool listDevices = false;
     bool dryRun = false;
     bool resume = false;
-    bool filter = true;
+    std::optional<bool> filter;
     bool relocate = true;
     bool force = false;
     bool explain = false;

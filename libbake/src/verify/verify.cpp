@@ -139,7 +139,9 @@ Result<ReferencePicture> ProbeVerifier::trace(gpu::Device& device, const VerifyI
     PFVOX_CHECK(device.upload(canvas.pixels, 0, std::as_bytes(std::span(none))));
     ReferencePicture picture{.width = settings.width, .height = settings.height, .even = {}, .odd = {}};
     const std::uint64_t fitting = kPathsPerDispatch / settings.width / shared::kVerifyGroupEdge;
-    const auto perDispatch = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(fitting, 1, settings.samples));
+    // llvmpipe bounds the loops of an invocation, all together: docs/decisions/013-baker.md.
+    const bool software = device.info().kind == gpu::DeviceKind::Software;
+    const auto perDispatch = software ? 1u : static_cast<std::uint32_t>(std::clamp<std::uint64_t>(fitting, 1, settings.samples));
     shared::VerifyPush& push = canvas.push;
     for (push.firstSample = 0; push.firstSample < settings.samples; push.firstSample += perDispatch) {
         push.sampleCount = std::min(perDispatch, settings.samples - push.firstSample);
