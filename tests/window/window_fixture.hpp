@@ -98,8 +98,8 @@ class WindowFixture : public ::testing::Test {
         return viewer::readPng(folder / name).value_or(viewer::Picture{});
     }
     /// When its frames have gathered. The cursor is in the picture.
-    ::testing::AssertionResult looksLike(const std::string& golden) {
-        const ImageTolerance tolerance{.channel = 12, .pixelShare = 0.01};
+    ::testing::AssertionResult looksLike(const std::string& golden, double pixelShare = 0.01) {
+        const ImageTolerance tolerance{.channel = 12, .pixelShare = pixelShare};
         if (std::getenv("PFVOX_UPDATE_GOLDEN") != nullptr) VirtualScreen::pause(12.0);
         ::testing::AssertionResult result = ::testing::AssertionFailure();
         eventually([&] { return bool(result = matchesGolden(screen->picture(), golden, tolerance)); });
