@@ -64,6 +64,11 @@ class Process {
 
     void send(int signal) const { ::kill(pid_, signal); }
 
+    bool hasEnded() const {
+        siginfo_t info{};
+        return ::waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOHANG | WNOWAIT) == 0 && info.si_pid == pid_;
+    }
+
     ProcessResult finish() {
         ProcessResult result;
         std::array<pollfd, 2> ends{{{out_[0], POLLIN, 0}, {err_[0], POLLIN, 0}}};

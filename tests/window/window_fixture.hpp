@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include <chrono>
 #include <cstdlib>
 #include <functional>
 #include <map>
@@ -16,6 +17,7 @@
 
 namespace pfvox::test {
 
+inline constexpr std::chrono::seconds kLongestWait{20};
 inline constexpr const char* kConfig = "pfvox/pfview.toml";
 
 /// Sky, sun and room: more than one colour.
@@ -57,13 +59,14 @@ class WindowFixture : public ::testing::Test {
                          .input = {},
                          .folder = folder.path()});
     }
-    /// Until it is so, at most half a minute.
+    /// Until it is so, at most kLongestWait.
     bool eventually(const std::function<bool()>& isSo) const {
-        for (int i = 0; i < 150; ++i) {
+        const auto end = std::chrono::steady_clock::now() + kLongestWait;
+        do {
             if (isSo()) return true;
-            VirtualScreen::pause(0.2);
-        }
-        return false;
+            VirtualScreen::pause(0.1);
+        } while (std::chrono::steady_clock::now() < end);
+        return isSo();
     }
     bool startAndSee(const std::string& file) {
         start(file);
@@ -74,6 +77,10 @@ class WindowFixture : public ::testing::Test {
     }
     /// Waits for its end; the validation layer makes the exit code 70 when it has complaints.
     void expectClosed() {
+        if (!eventually([&] { return app->hasEnded(); })) {
+            ADD_FAILURE() << "it does not close";
+            app->send(SIGKILL);
+        }
         const ProcessResult result = app->finish();
         app.reset();
         EXPECT_EQ(result.exitCode, 0) << result.err;
@@ -91,14 +98,11 @@ class WindowFixture : public ::testing::Test {
         return viewer::readPng(folder / name).value_or(viewer::Picture{});
     }
     /// When its frames have gathered. The cursor is in the picture.
-    ::testing::AssertionResult looksLike(const std::string& golden) {
-        const ImageTolerance tolerance{.channel = 12, .pixelShare = 0.01};
+    ::testing::AssertionResult looksLike(const std::string& golden, double pixelShare = 0.01) {
+        const ImageTolerance tolerance{.channel = 12, .pixelShare = pixelShare};
         if (std::getenv("PFVOX_UPDATE_GOLDEN") != nullptr) VirtualScreen::pause(12.0);
         ::testing::AssertionResult result = ::testing::AssertionFailure();
-        for (int i = 0; i < 60 && !result; ++i) {
-            VirtualScreen::pause(0.5);
-            result = matchesGolden(screen->picture(), golden, tolerance);
-        }
+        eventually([&] { return bool(result = matchesGolden(screen->picture(), golden, tolerance)); });
         return result;
     }
 

@@ -109,6 +109,10 @@ GlfwWindow& GlfwWindow::of(GLFWwindow* window) {
 void GlfwWindow::installCallbacks() {
     glfwSetKeyCallback(window_, [](GLFWwindow* w, int key, int scancode, int action, int mods) {
         GlfwWindow& self = of(w);
+        if (action == GLFW_PRESS && key >= 0) {
+            self.pressed_.keys.push_back(key);
+            self.pressed_.modifiers |= mods;
+        }
         const Key which = keyOf(key, scancode);
         if (action == GLFW_REPEAT && !repeats(which)) return;
         const Capture taken = self.capture();
@@ -118,8 +122,9 @@ void GlfwWindow::installCallbacks() {
     });
     glfwSetCursorPosCallback(window_,
                              [](GLFWwindow* w, double x, double y) { of(w).interaction_->cursor({x, y}); });
-    glfwSetMouseButtonCallback(window_, [](GLFWwindow* w, int button, int action, int) {
+    glfwSetMouseButtonCallback(window_, [](GLFWwindow* w, int button, int action, int mods) {
         GlfwWindow& self = of(w);
+        if (action == GLFW_PRESS) self.pressed_.modifiers |= mods;
         if (button > GLFW_MOUSE_BUTTON_MIDDLE || (action == GLFW_PRESS && self.capture().mouse)) return;
         const MouseButton which = button == GLFW_MOUSE_BUTTON_LEFT    ? MouseButton::Left
                                   : button == GLFW_MOUSE_BUTTON_RIGHT ? MouseButton::Right
@@ -179,6 +184,10 @@ void GlfwWindow::pollEvents(double seconds) {
 
 std::vector<std::filesystem::path> GlfwWindow::takeDropped() {
     return std::exchange(dropped_, {});
+}
+
+GlfwWindow::Pressed GlfwWindow::takePressed() {
+    return std::exchange(pressed_, {});
 }
 
 }  // namespace pfvox::viewer

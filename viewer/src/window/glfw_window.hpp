@@ -41,6 +41,12 @@ class GlfwWindow {
         bool arrows = false;  ///< the keys that move about in the overlay
     };
 
+    /// What went down, even when it is up again by now; keys and modifiers as GLFW numbers them.
+    struct Pressed {
+        std::vector<int> keys;
+        int modifiers = 0;  ///< that were held with any of them, or with a mouse button
+    };
+
     /// Errors: GpuUnavailable.
     static Result<std::unique_ptr<GlfwWindow>> create(glm::uvec2 size, const std::string& title,
                                                       Interaction& interaction);
@@ -59,6 +65,8 @@ class GlfwWindow {
     /// Handles what has happened; waits for something for at most `seconds` when nothing has.
     void pollEvents(double seconds);
     std::vector<std::filesystem::path> takeDropped();
+    /// Since the last call.
+    Pressed takePressed();
 
     std::function<Capture()> capture = [] { return Capture{}; };
 
@@ -70,6 +78,7 @@ class GlfwWindow {
     GLFWwindow* window_;
     Interaction* interaction_;
     std::vector<std::filesystem::path> dropped_;
+    Pressed pressed_;
     std::string title_;
 };
 

@@ -1,17 +1,53 @@
 #include "window/overlay.hpp"
 
+#include <GLFW/glfw3.h>
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_vulkan.h>
 #include <imgui.h>
 
 #include <algorithm>
 #include <system_error>
+#include <utility>
+#include <vector>
 
 namespace pfvox::viewer {
 
+namespace {
+
+/// Dear ImGui before 1.87 sees which keys are down when a frame begins: one that went down and up while a slow frame
+/// was computed would be lost. Such keys are down for the frame that follows.
+class BriefKeys {
+  public:
+    explicit BriefKeys(const GlfwWindow::Pressed& pressed) {
+#if IMGUI_VERSION_NUM < 18700
+        for (const int key : pressed.keys) press(io_.KeysDown[key]);
+        if ((pressed.modifiers & GLFW_MOD_CONTROL) != 0) press(io_.KeyCtrl);
+        if ((pressed.modifiers & GLFW_MOD_SHIFT) != 0) press(io_.KeyShift);
+        if ((pressed.modifiers & GLFW_MOD_ALT) != 0) press(io_.KeyAlt);
+#else
+        static_cast<void>(pressed);  // its queue gives each its frame
+#endif
+    }
+    ~BriefKeys() {
+        for (bool* const key : added_) *key = false;
+    }
+    BriefKeys(const BriefKeys&) = delete;
+    BriefKeys& operator=(const BriefKeys&) = delete;
+
+  private:
+    void press(bool& key) {
+        if (!std::exchange(key, true)) added_.push_back(&key);
+    }
+
+    ImGuiIO& io_ = ImGui::GetIO();
+    std::vector<bool*> added_;
+};
+
+}  // namespace
+
 Result<std::unique_ptr<Overlay>> Overlay::create(GlfwWindow& window, Presenter& presenter,
                                                  const std::filesystem::path& layoutFile) {
-    std::unique_ptr<Overlay> overlay(new Overlay);
+    std::unique_ptr<Overlay> overlay(new Overlay(window));
     IMGUI_CHECKVERSION();
     ImGui::CreateContext();
     ImGui::StyleColorsDark();
@@ -23,7 +59,7 @@ Result<std::unique_ptr<Overlay>> Overlay::create(GlfwWindow& window, Presenter& 
     ImGui::GetIO().ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;  // all of it without a mouse
     overlay->layoutFile_ = layoutFile.string();
     ImGui::GetIO().IniFilename = layoutFile.empty() ? nullptr : overlay->layoutFile_.c_str();
-    PFVOX_CHECK(overlay->start(window, presenter));
+    PFVOX_CHECK(overlay->start(presenter));
     window.capture = [] {
         const ImGuiIO& io = ImGui::GetIO();
         const bool asks = ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup);
@@ -33,7 +69,7 @@ Result<std::unique_ptr<Overlay>> Overlay::create(GlfwWindow& window, Presenter& 
     return overlay;
 }
 
-Result<void> Overlay::start(GlfwWindow& window, Presenter& presenter) {
+Result<void> Overlay::start(Presenter& presenter) {
     const gpu::NativeDevice& native = presenter.native();
     device_ = vk::Device(native.device);
     try {
@@ -46,7 +82,7 @@ Result<void> Overlay::start(GlfwWindow& window, Presenter& presenter) {
     } catch (const vk::Error& error) {
         return fail(ErrorCode::GpuUnavailable, std::string("overlay: ") + error.what());
     }
-    platformStarted_ = ImGui_ImplGlfw_InitForVulkan(window.handle(), true);
+    platformStarted_ = ImGui_ImplGlfw_InitForVulkan(window_->handle(), true);
     ImGui_ImplVulkan_InitInfo info{};
     info.Instance = native.instance;
     info.PhysicalDevice = native.physicalDevice;
@@ -77,6 +113,7 @@ Overlay::~Overlay() {
 void Overlay::build(const std::function<void()>& drawPanels) {
     ImGui_ImplVulkan_NewFrame();
     ImGui_ImplGlfw_NewFrame();
+    const BriefKeys brief(window_->takePressed());
     ImGui::NewFrame();
     drawPanels();
     ImGui::Render();

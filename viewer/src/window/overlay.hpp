@@ -24,9 +24,10 @@ class Overlay {
     void draw(VkCommandBuffer commands);
 
   private:
-    Overlay() = default;
-    Result<void> start(GlfwWindow& window, Presenter& presenter);
+    explicit Overlay(GlfwWindow& window) : window_(&window) {}
+    Result<void> start(Presenter& presenter);
 
+    GlfwWindow* window_;
     vk::UniqueDescriptorPool descriptors_;
     std::string layoutFile_;
     vk::Device device_;
