@@ -40,7 +40,7 @@ void makeAll(const Wanted& wanted) {
     make(wanted, "half_planet.vox", writeHalfPlanet);
     make(wanted, "monument.vox", writeMonument);
     make(wanted, "terrain_shell.vox", writeTerrainShell);
-    make(wanted, "valley.toml", writeValley);
+    make(wanted, "valley.scene.toml", writeValley);
     make(wanted, "solid_terrain.vox", writeSolidTerrain);
 #ifdef PFVOX_BENCH_WITH_OPENVDB
     make(wanted, "fog_r400.vdb", writeFogBall);
