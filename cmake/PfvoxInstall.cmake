@@ -63,7 +63,7 @@ cmake_path(RELATIVE_PATH CMAKE_INSTALL_PREFIX BASE_DIRECTORY ${CMAKE_INSTALL_FUL
 configure_file(cmake/pfvox-format.pc.in ${PROJECT_BINARY_DIR}/cmake/pfvox-format.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/cmake/pfvox-format.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT dev)
 
-install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/libpfvox-dev COMPONENT dev
+install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/libpfvox-dev COMPONENT dev USE_SOURCE_PERMISSIONS
   PATTERN build EXCLUDE PATTERN generator EXCLUDE)
 install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/libpfvox-dev COMPONENT dev
   FILES_MATCHING PATTERN "*.md" PATTERN "*.schema.json" PATTERN images EXCLUDE)
