@@ -95,14 +95,15 @@ class Baker {
 
     void warnAboutGrid() {
         if (scene_.bounds.empty()) return;
-        const glm::dvec3 low(info_.grid.start - 0.5f * info_.grid.step);
-        const glm::dvec3 high = low + glm::dvec3(info_.grid.step) * glm::dvec3(info_.grid.counts);
+        const glm::dvec3 low(info_.grid.start - kProximityReach * info_.grid.step);
+        const glm::dvec3 high(info_.grid.pointOf(static_cast<std::uint32_t>(info_.grid.probeCount() - 1)) +
+                              kProximityReach * info_.grid.step);
         const glm::dvec3 outside = glm::max(low - scene_.bounds.min, scene_.bounds.max - high);
         const double most = std::max({outside.x, outside.y, outside.z});
         if (most <= 1e-6) return;
         diagnostics_.warn("bake-grid-outside",
-                          fmt::format("models reach {:.3g} m beyond half a step around the probe grid: light there is "
-                                      "that of the nearest probes",
+                          fmt::format("models reach {:.3g} m further than a step around the probe grid: light there is "
+                                      "that of the irradiance maps of the nearest probes",
                                       most));
     }
 
@@ -264,7 +265,7 @@ class Baker {
 
     Result<ProximityGrid> makeProximity(const ProbeFileWriter& writer, std::span<const ProbeRecord> records) {
         const auto began = Clock::now();
-        const ProximityGrid shape = proximityShape(info_.grid, scene_.scene.probes.proximityCells);
+        const ProximityGrid shape = proximityShape(info_.grid, scene_.scene.probes.proximityCells, scene_.bounds);
         const CellSurfaces surfaces = sortIntoCells(surfaceSamples(models_, shape), shape);
         const auto depthNormal = [&](std::uint32_t probe) -> Result<std::vector<std::uint32_t>> {
             PFVOX_TRY(ProbeData, data, writer.readProbe(probe));

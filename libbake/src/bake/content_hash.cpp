@@ -12,7 +12,7 @@ namespace pfvox {
 namespace {
 
 /// Raised when the same inputs give another result for a reason that is not in the shaders.
-constexpr std::uint32_t kBakeVersion = 3;
+constexpr std::uint32_t kBakeVersion = 4;
 
 class Hasher {
   public:

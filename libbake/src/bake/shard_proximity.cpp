@@ -44,7 +44,7 @@ Result<ProximityBuild> proximityOfShards(const LoadedScene& scene, std::span<con
         return std::move(data.depthNormal);
     };
     const ProbeFieldInfo& info = order.front()->info();
-    const ProximityGrid shape = bake::proximityShape(info.grid, scene.scene.probes.proximityCells);
+    const ProximityGrid shape = bake::proximityShape(info.grid, scene.scene.probes.proximityCells, scene.bounds);
     const CellSurfaces surfaces = sortIntoCells(bake::surfaceSamples(bake::placedModels(scene), shape), shape);
     return buildProximityGrid(
         {.info = info, .records = records, .depthNormal = depthNormal, .shape = shape, .surfaces = surfaces});

@@ -46,9 +46,19 @@ void forEachSample(const PlacedModel& placed, const WorldBox& box, const Visit& 
 
 }  // namespace
 
-ProximityGrid proximityShape(const ProbeGrid& probes, const glm::uvec3& cells) {
-    const glm::vec3 size = probes.step * glm::vec3(probes.counts);
-    return {.start = probes.start - 0.5f * probes.step, .step = size / glm::vec3(cells), .counts = cells, .probes = {}};
+ProximityGrid proximityShape(const ProbeGrid& probes, const glm::uvec3& cells, const WorldBounds& surfaces) {
+    constexpr float kMargin = 0.1f;  // of a step: lookups ask a little above the surface
+    glm::vec3 low = probes.start - kProximityReach * probes.step;
+    glm::vec3 high = probes.start + (glm::vec3(probes.counts - 1u) + kProximityReach) * probes.step;
+    if (!surfaces.empty()) {
+        const glm::vec3 tightLow = glm::max(low, glm::vec3(surfaces.min) - kMargin * probes.step);
+        const glm::vec3 tightHigh = glm::min(high, glm::vec3(surfaces.max) + kMargin * probes.step);
+        if (glm::all(glm::lessThan(tightLow, tightHigh))) {
+            low = tightLow;
+            high = tightHigh;
+        }
+    }
+    return {.start = low, .step = (high - low) / glm::vec3(cells), .counts = cells, .probes = {}};
 }
 
 std::vector<SurfaceSample> surfaceSamples(std::span<const PlacedModel> models, const ProximityGrid& shape,

@@ -2,14 +2,19 @@
 #pragma once
 
 #include <pfvox/proximity.hpp>
+#include <pfvox/scene.hpp>
 #include <span>
 
 #include "bake/placed_models.hpp"
 
 namespace pfvox::bake {
 
-/// The box over which a proximity grid reaches: the space of the probes and half a step around it.
-ProximityGrid proximityShape(const ProbeGrid& probes, const glm::uvec3& cells);
+/// How far surfaces may stand outside of the outermost probes and still have cells of their own, in steps of the grid.
+inline constexpr float kProximityReach = 1.0f;
+
+/// The box that cells divide: that of all surfaces, as far as it lies within reach of the probes. Grids seldom end
+/// where the walls stand, and a cell spent on empty space is a cell less where there is surface.
+ProximityGrid proximityShape(const ProbeGrid& probes, const glm::uvec3& cells, const WorldBounds& surfaces);
 
 /// Middles of the exposed faces of all voxels within the grid's box. Of more than `most` faces, every n-th.
 std::vector<SurfaceSample> surfaceSamples(std::span<const PlacedModel> models, const ProximityGrid& shape,
