@@ -39,10 +39,10 @@ ivec2 wrappedTexel(ivec2 texel, uint edge) {
     return borderSource(clamp(texel, ivec2(-1), ivec2(edge)) + 1, int(edge));
 }
 
-// First word of the proximity cell's list, or kNoProbeIndex outside the grid.
-uint proximityListOf(ProbeFieldRecord field, vec3 point) {
+// First word of the proximity cell's list, or kNoProbeIndex outside the grid. `normal`: of the surface; 0 in free space.
+uint proximityListOf(ProbeFieldRecord field, vec3 point, vec3 normal) {
     if (field.cellCounts.x == 0) return kNoProbeIndex;
-    vec3 at = (point - field.cellStart) / field.cellStep;
+    vec3 at = proximityCoordinate(point, normal, field.cellStart, field.cellStep);
     if (any(lessThan(at, vec3(0.0))) || any(greaterThanEqual(at, vec3(field.cellCounts)))) return kNoProbeIndex;
     ivec3 cell = ivec3(at);
     return kProbesOfCell * uint(cell.x + field.cellCounts.x * (cell.y + field.cellCounts.y * cell.z));

@@ -1,8 +1,8 @@
 // Indirect light at a surface point from a probe field: I = E / pi, never without a value where any probe is active.
 //
-//     tier 1  texels of the cell's probes that see this very surface
+//     tier 1  texels that see this very surface, of the cell's probes or of the eight around
 //     tier 3  the eight probes around, by their irradiance and moments (Majercik et al. 2019, "Dynamic Diffuse Global
-//             Illumination with Ray-Traced Irradiance Fields")
+//             Illumination with Ray-Traced Irradiance Fields"); of a wider range where none of them sees the point
 //     tier 4  the nearest active probe
 //
 // Tiers are blended by how well the texels agree. Tier 2, tracing through the field, is probe_trace.glsl: it answers
@@ -13,10 +13,13 @@
 #include "probe_field.glsl"
 
 const float kCompactWeightFloor = 1e-4;
+const float kSeenEnough = 0.1;  // of the eight probes around, by their trilinear weights
+const int kWideSteps = 2;
 const float kPlaneVoxels = 0.25;       // how far a texel's surface may lie off the plane of the point
 const float kPlaneSlackShare = 1e-3;   // of the distance to the plane: depth codes are no finer
 const float kMixedTexelWeight = 0.05;
 const float kLeastTexelWeight = 0.02;  // of a neighbour that lies on the point's own texel's border
+const float kMuchUnseen = 0.5;
 const float kTexelConfidence = 4.0;    // a quarter of a texel's width that agrees is as good as all of it
 
 struct ProbeLight {
@@ -75,28 +78,40 @@ vec4 lightSeenBy(ProbeFieldRecord field, ProbeEntry probe, SurfacePoint point) {
     return sum.w > 0.0 ? vec4(sum.rgb / sum.w, min(kTexelConfidence * covered, 1.0)) : vec4(0.0);
 }
 
+struct TexelSum {
+    vec4 weighed;  // I times weight; the weights
+    float unseen;
+};
+
+void addTexelsOf(ProbeFieldRecord field, ProbeEntry probe, SurfacePoint point, inout TexelSum sum) {
+    if (probe.isActive == 0u) return;
+    vec4 seen = lightSeenBy(field, probe, point);
+    if (seen.w <= 0.0) return;
+    vec3 toPoint = point.position - probe.position;
+    float squared = max(dot(toPoint, toPoint), 1e-8);
+    // Texels a square metre of the surface.
+    float weight = seen.w * max(-dot(toPoint, point.normal), 0.0) * inversesqrt(squared) / squared;
+    sum.weighed += weight * vec4(seen.rgb, 1.0);
+    sum.unseen *= 1.0 - seen.w;
+}
+
+// Of the probes that the cell names; where they do not see the point, of the eight around.
 vec4 lightOfTexels(ProbeFieldRecord field, SurfacePoint point) {
     if (field.lightEdge == 0u || field.depthEdge == 0u) return vec4(0.0);
-    // A point on the face between two cells belongs to the one that it is seen from.
-    uint list = proximityListOf(field, point.position + 0.25 * field.voxelMetres * point.normal);
+    uint list = proximityListOf(field, point.position, point.normal);
     if (list == kNoProbeIndex) return vec4(0.0);
-    vec4 sum = vec4(0.0);
-    float unseen = 1.0;
+    TexelSum sum = TexelSum(vec4(0.0), 1.0);
     for (uint k = 0u; k < kProbesOfCell; ++k) {
         uint index = ProbeWords(field.cells).at[list + k];
         if (index == kNoProbeIndex) break;
-        ProbeEntry probe = ProbeEntries(field.probes).at[index];
-        if (probe.isActive == 0u) continue;
-        vec4 seen = lightSeenBy(field, probe, point);
-        if (seen.w <= 0.0) continue;
-        vec3 toPoint = point.position - probe.position;
-        float squared = max(dot(toPoint, toPoint), 1e-8);
-        // Texels a square metre of the surface.
-        float weight = seen.w * max(-dot(toPoint, point.normal), 0.0) * inversesqrt(squared) / squared;
-        sum += weight * vec4(seen.rgb, 1.0);
-        unseen *= 1.0 - seen.w;
+        addTexelsOf(field, ProbeEntries(field.probes).at[index], point, sum);
     }
-    return sum.w > 0.0 ? vec4(sum.rgb / sum.w, 1.0 - unseen) : vec4(0.0);
+    if (sum.unseen > kMuchUnseen) {
+        ivec3 cell = probeCellOf(field, point.position);
+        for (uint corner = 0u; corner < 8u; ++corner)
+            if (cornerExists(field, corner)) addTexelsOf(field, probeAtCorner(field, cell, corner), point, sum);
+    }
+    return sum.weighed.w > 0.0 ? vec4(sum.weighed.rgb / sum.weighed.w, 1.0 - sum.unseen) : vec4(0.0);
 }
 
 // ---- Tiers 3 and 4 ----
@@ -146,32 +161,67 @@ float visibilityFrom(ProbeFieldRecord field, ProbeEntry probe, vec3 toPoint) {
     return bound * bound * bound;
 }
 
-float compactWeight(ProbeFieldRecord field, ProbeEntry probe, SurfacePoint point, vec3 biased) {
+float facingWeight(ProbeEntry probe, SurfacePoint point) {
     vec3 toProbe = probe.position - point.position;
     float distance = length(toProbe);
     float facing = distance > 1e-6 ? 0.5 * dot(toProbe, point.normal) / distance + 0.5 : 1.0;
-    float weight = (facing * facing + 0.2) * visibilityFrom(field, probe, biased - probe.position);
-    // Little is made less, or many faint probes behind walls would add up.
-    if (weight < 0.2) weight *= weight * weight / 0.04;
-    return max(weight, kCompactWeightFloor);
+    return facing * facing + 0.2;
 }
 
+// Little is made less, or many faint probes behind walls would add up.
+float curbed(float weight) { return max(weight < 0.2 ? weight * weight * weight / 0.04 : weight, kCompactWeightFloor); }
+
 // Square roots are blended: one probe beside a lamp or a window does not outshine the seven others.
+struct RootSum {
+    vec4 weighed;  // roots of I times weight; the weights
+    float seen;    // share of the neighbourhood that sees the point
+};
+
+void addProbe(ProbeFieldRecord field, ProbeEntry probe, SurfacePoint point, vec3 biased, float near, inout RootSum sum) {
+    if (probe.isActive == 0u) return;
+    float visibility = visibilityFrom(field, probe, biased - probe.position);
+    float weight = near * curbed(facingWeight(probe, point) * visibility);
+    sum.weighed += weight * vec4(sqrt(irradianceOf(field, probe, point.normal)), 1.0);
+    sum.seen += near * visibility;
+}
+
+// The probes up to two steps away, by distance: where the nearest eight are all behind walls, or far outside of the grid.
+RootSum rootsOfWideRange(ProbeFieldRecord field, SurfacePoint point, vec3 biased, ivec3 cell) {
+    RootSum sum = RootSum(vec4(0.0), 0.0);
+    ivec3 low = max(cell - kWideSteps, ivec3(0));
+    ivec3 high = min(cell + 1 + kWideSteps, field.counts - 1);
+    vec3 inside = clamp(biased, field.start, field.start + field.step * vec3(field.counts - 1));
+    for (int z = low.z; z <= high.z; ++z) {
+        for (int y = low.y; y <= high.y; ++y) {
+            for (int x = low.x; x <= high.x; ++x) {
+                ProbeEntry probe = ProbeEntries(field.probes).at[probeIndexAt(field, ivec3(x, y, z))];
+                vec3 steps = (probe.position - inside) / field.step;
+                addProbe(field, probe, point, biased, exp2(-dot(steps, steps)), sum);
+            }
+        }
+    }
+    return sum;
+}
+
 vec4 lightOfGrid(ProbeFieldRecord field, SurfacePoint point) {
     vec3 biased = point.position + min(2.0 * field.voxelMetres, 0.2 * min(field.step.x, min(field.step.y, field.step.z))) * point.normal;
     ivec3 cell = probeCellOf(field, biased);
     vec3 fraction = clamp((biased - field.start) / field.step - vec3(cell), vec3(0.0), vec3(1.0));
-    vec4 sum = vec4(0.0);
+    RootSum sum = RootSum(vec4(0.0), 0.0);
     for (uint corner = 0u; corner < 8u; ++corner) {
         if (!cornerExists(field, corner)) continue;
-        ProbeEntry probe = probeAtCorner(field, cell, corner);
-        if (probe.isActive == 0u) continue;
         vec3 near = max(mix(1.0 - fraction, fraction, vec3(cornerOffset(corner))), vec3(0.001));
-        float weight = near.x * near.y * near.z * compactWeight(field, probe, point, biased);
-        sum += weight * vec4(sqrt(irradianceOf(field, probe, point.normal)), 1.0);
+        addProbe(field, probeAtCorner(field, cell, corner), point, biased, near.x * near.y * near.z, sum);
     }
-    vec3 root = sum.rgb / max(sum.w, 1e-20);
-    return sum.w > 0.0 ? vec4(root * root, 1.0) : vec4(0.0);
+    vec3 root = sum.weighed.rgb / max(sum.weighed.w, 1e-20);
+    bool found = sum.weighed.w > 0.0;
+    if (sum.seen < kSeenEnough) {
+        RootSum wide = rootsOfWideRange(field, point, biased, cell);
+        float share = found ? sum.seen / kSeenEnough : 0.0;
+        if (wide.weighed.w > 0.0) root = mix(wide.weighed.rgb / wide.weighed.w, root, share);
+        found = found || wide.weighed.w > 0.0;
+    }
+    return found ? vec4(root * root, 1.0) : vec4(0.0);
 }
 
 vec4 lightOfNearest(ProbeFieldRecord field, SurfacePoint point) {

@@ -61,7 +61,7 @@ uint traceNamedProbes(ProbeFieldRecord field, FieldRay ray, inout float tMin, in
     uint last = kNoProbeIndex;
     uint asked = 0u;
     for (float t = tMin; t < end && asked < kMaxNamedProbes; t += pace) {
-        uint list = proximityListOf(field, ray.origin + t * ray.direction);
+        uint list = proximityListOf(field, ray.origin + t * ray.direction, vec3(0.0));
         if (list == kNoProbeIndex || list == last) continue;
         last = list;
         for (uint k = 0u; k < kProbesOfCell; ++k) {

@@ -42,6 +42,7 @@ PFVOX_CONSTANT(float, kSurfaceSlackTexels, 0.75f);
 PFVOX_CONSTANT(float, kSurfaceMinCosine, 0.05f);
 PFVOX_CONSTANT(float, kSurfaceMinNormalDot, 0.9f);
 PFVOX_CONSTANT(float, kSurfaceMinAgreement, 0.45f);  // of the bilinear weights of four texels
+PFVOX_CONSTANT(float, kProximityLift, 1e-3f);        // of a cell, towards the viewer
 
 // ---- Octahedral mapping ----
 
@@ -205,6 +206,16 @@ PFVOX_FUNCTION uint packMoments(vec2 moments) {
 }
 PFVOX_FUNCTION vec2 unpackMoments(uint word) {
     return vec2(unpackSmallFloat(word & 0x7fffu, 10u), unpackSmallFloat((word >> 16) & 0x7fffu, 10u));
+}
+
+// ---- Cells of the proximity grid ----
+
+// Coordinate, in cells, of the point of a surface: its whole part is the cell. A point on the face between two cells
+// belongs to the one that it is seen from.
+PFVOX_FUNCTION vec3 proximityCoordinate(vec3 position, vec3 normal, vec3 start, vec3 cell) {
+    return vec3((position.x - start.x) / cell.x + kProximityLift * normal.x,
+                (position.y - start.y) / cell.y + kProximityLift * normal.y,
+                (position.z - start.z) / cell.z + kProximityLift * normal.z);
 }
 
 // ---- Does a texel see a surface point? ----

@@ -199,32 +199,34 @@ ProximityGrid bruteForce(const Scene& scene, const CellSurfaces& surfaces) {
             if (!scene.records[p].isActive() || glm::distance(eye, centre) > 2 * glm::length(scene.info.grid.step)) continue;
             std::vector<bool> bits;
             float sum = 0;
-            const auto weigh = [&](glm::vec3 point) {
-                const float width = std::max(glm::distance(point, eye), 1e-3f) * 4.5573f / static_cast<float>(edge);
-                sum += 1 / (width * width);
-            };
+            int surfacesSeen = 0;
             for (std::size_t i = 0; i < kept; ++i) {
                 const SurfaceSample& s = surfaces.samples[first + i * count / kept];
                 bits.push_back(texelsAroundSee(maps[p], s, eye, edge, coder));
-                if (bits.back()) weigh(s.position);
+                if (!bits.back()) continue;
+                const glm::vec3 way = s.position - eye;
+                const float metres = std::max(glm::length(way), 1e-3f);
+                const float width = metres * 4.5573f / static_cast<float>(edge);
+                sum += std::abs(glm::dot(way, s.normal)) / (metres * width * width);
+                ++surfacesSeen;
             }
             if (std::ranges::find(bits, true) == bits.end()) continue;
             for (int c = 0; c < 8; ++c) {
                 const glm::vec3 corner = low + grid.step * glm::vec3{c & 1, c >> 1 & 1, c >> 2};
                 const std::uint32_t code = depthCodeOf(maps[p][texelIndex(corner - eye, edge)]);
                 bits.push_back(code == kDepthMissCode || coder.decode(code) + 0.01f >= glm::distance(corner, eye));
-                if (bits.back()) weigh(corner);
             }
             seen[p] = bits;
-            texels[p] = sum;
+            texels[p] = sum / static_cast<float>(surfacesSeen);
         }
         std::vector<bool> covered(kept + 8);
         for (std::size_t n = 0; n < 4 && !seen.empty(); ++n) {
             std::uint32_t best = kNoProbe;
-            std::pair<int, float> bestScore{-1, 0};
+            std::pair<float, float> bestScore{-1.0f, 0.0f};
             for (const auto& [p, bits] : seen) {
-                std::pair<int, float> score{0, texels[p]};
-                for (std::size_t i = 0; i < bits.size(); ++i) score.first += bits[i] && !covered[i] ? 1 : 0;
+                int fresh = 0;
+                for (std::size_t i = 0; i < bits.size(); ++i) fresh += bits[i] && !covered[i] ? 1 : 0;
+                const std::pair<float, float> score{static_cast<float>(fresh) * std::sqrt(texels[p]), texels[p]};
                 if (score > bestScore) {
                     bestScore = score;
                     best = p;

@@ -1,11 +1,13 @@
 #include "io/files.hpp"
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <array>
 #include <csignal>
 #include <fstream>
 
@@ -88,6 +90,34 @@ TEST_F(Files, PipesAndDevicesAreRefusedInsteadOfReadForever) {
     ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
     EXPECT_EQ(readFile(pipe, 10).error().code, ErrorCode::FileNotReadable);
     EXPECT_EQ(readFile("/dev/zero", 10).error().code, ErrorCode::FileNotReadable);
+}
+
+TEST_F(Files, ALinkStaysALinkAndWhatItLeadsToIsReplaced) {
+    fs::create_directories(folder_ / "disk");
+    ASSERT_TRUE(writeFileAtomically(folder_ / "disk" / "asset", bytesOf("old")));
+    fs::create_symlink("disk/asset", folder_ / "link");
+    fs::create_symlink("disk/later", folder_ / "dangling");
+    ASSERT_TRUE(writeFileAtomically(folder_ / "link", bytesOf("new")));
+    ASSERT_TRUE(writeFileAtomically(folder_ / "dangling", bytesOf("first")));
+    EXPECT_TRUE(fs::is_symlink(folder_ / "link"));
+    EXPECT_TRUE(fs::is_symlink(folder_ / "dangling"));
+    EXPECT_EQ(contentOf(folder_ / "disk" / "asset"), "new");
+    EXPECT_EQ(contentOf(folder_ / "disk" / "later"), "first");
+    EXPECT_EQ(filesInFolder(), 3u);
+}
+
+TEST_F(Files, APipeIsWrittenToAndStaysAPipe) {
+    const fs::path pipe = folder_ / "pipe";
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    const int reader = ::open(pipe.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
+    ASSERT_GE(reader, 0);
+    EXPECT_TRUE(writeFileAtomically(pipe, bytesOf("bytes")));
+    std::array<char, 16> got{};
+    EXPECT_EQ(::read(reader, got.data(), got.size()), 5);
+    EXPECT_STREQ(got.data(), "bytes");
+    ::close(reader);
+    EXPECT_TRUE(fs::is_fifo(pipe));
+    EXPECT_EQ(filesInFolder(), 1u);
 }
 
 TEST_F(Files, FailedWriteLeavesTheOldFileAndNothingElse) {

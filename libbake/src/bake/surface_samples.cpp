@@ -2,7 +2,10 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
+#include <array>
 #include <numeric>
+#include <optional>
 
 #include "bake/exposed_faces.hpp"
 
@@ -29,18 +32,42 @@ bool meets(const PlacedModel& placed, const WorldBox& box) {
     return false;
 }
 
-/// Calls `visit` with each sample of the model in the box, always in the same order.
+/// Of a face, from its middle on, in voxels: the middle, near the corners, near the edges' middles.
+constexpr std::array<glm::dvec2, 9> kPlaces{{{0.0, 0.0},
+                                             {-0.49, -0.49},
+                                             {0.49, -0.49},
+                                             {-0.49, 0.49},
+                                             {0.49, 0.49},
+                                             {-0.49, 0.0},
+                                             {0.49, 0.0},
+                                             {0.0, -0.49},
+                                             {0.0, 0.49}}};
+constexpr std::size_t kCorners = 4;
+
+/// Calls `visit` with the samples of a model that lie in the grid's box, always in the same order: the middle of each
+/// exposed face, and of the places around it those in cells of their own, or strips of faces would have no probes.
 template <class Visit>
-void forEachSample(const PlacedModel& placed, const WorldBox& box, const Visit& visit) {
+void forEachSample(const PlacedModel& placed, const ProximityGrid& shape, const Visit& visit) {
     const std::vector<bool> all(placed.asset->materials.size(), true);
     const glm::dmat3 normals = glm::transpose(glm::dmat3(placed.modelFromWorld));
     forEachExposedFace(*placed.model, {.wanted = all, .hides = all}, [&](const VoxelFace& face) {
         glm::dvec3 middle = glm::dvec3(face.voxel) + 0.5;
         middle[face.axis()] += face.isUpper() ? 0.5 : -0.5;
-        const glm::dvec3 position = placed.worldFromModel * glm::dvec4(middle, 1.0);
-        if (glm::any(glm::lessThan(position, box.min)) || glm::any(glm::greaterThan(position, box.max))) return;
-        const glm::dvec3 outward = (face.isUpper() ? 1.0 : -1.0) * normals[face.axis()];
-        visit(SurfaceSample{.position = glm::vec3(position), .normal = glm::vec3(glm::normalize(outward))});
+        const glm::vec3 normal(glm::normalize((face.isUpper() ? 1.0 : -1.0) * normals[face.axis()]));
+        std::array<std::optional<std::uint32_t>, kPlaces.size()> cells;
+        std::size_t distinct = 0;
+        for (std::size_t i = 0; i < kPlaces.size(); ++i) {
+            if (i > kCorners && distinct == 1) break;  // the whole face lies in one cell
+            glm::dvec3 point = middle;
+            point[(face.axis() + 1) % 3] += kPlaces[i].x;
+            point[(face.axis() + 2) % 3] += kPlaces[i].y;
+            const SurfaceSample sample{.position = glm::vec3(placed.worldFromModel * glm::dvec4(point, 1.0)), .normal = normal};
+            cells[i] = cellOfSurface(shape, sample);
+            const auto before = cells.begin() + static_cast<std::ptrdiff_t>(i);
+            if (i != 0 && std::find(cells.begin(), before, cells[i]) != before) continue;
+            ++distinct;
+            if (cells[i]) visit(sample);
+        }
     });
 }
 
@@ -68,7 +95,7 @@ std::vector<SurfaceSample> surfaceSamples(std::span<const PlacedModel> models, c
     // Counted first: all samples at once may not fit into memory.
     std::vector<std::uint64_t> firstOfModel(models.size() + 1);
     tbb::parallel_for(std::size_t{0}, models.size(), [&](std::size_t i) {
-        if (meets(models[i], box)) forEachSample(models[i], box, [&](const SurfaceSample&) { ++firstOfModel[i + 1]; });
+        if (meets(models[i], box)) forEachSample(models[i], shape, [&](const SurfaceSample&) { ++firstOfModel[i + 1]; });
     });
     std::partial_sum(firstOfModel.begin(), firstOfModel.end(), firstOfModel.begin());
     const std::uint64_t stride = std::max<std::uint64_t>((firstOfModel.back() + most - 1) / std::max<std::uint64_t>(most, 1), 1);
@@ -76,7 +103,7 @@ std::vector<SurfaceSample> surfaceSamples(std::span<const PlacedModel> models, c
     tbb::parallel_for(std::size_t{0}, models.size(), [&](std::size_t i) {
         std::uint64_t index = firstOfModel[i];
         if (index == firstOfModel[i + 1]) return;
-        forEachSample(models[i], box, [&](const SurfaceSample& sample) {
+        forEachSample(models[i], shape, [&](const SurfaceSample& sample) {
             if (index % stride == 0) samples[index / stride] = sample;
             ++index;
         });

@@ -16,7 +16,8 @@ inline constexpr float kProximityReach = 1.0f;
 /// where the walls stand, and a cell spent on empty space is a cell less where there is surface.
 ProximityGrid proximityShape(const ProbeGrid& probes, const glm::uvec3& cells, const WorldBounds& surfaces);
 
-/// Middles of the exposed faces of all voxels within the grid's box. Of more than `most` faces, every n-th.
+/// Middles of the exposed faces of all voxels within the grid's box, and points near a face's rim that lie in other
+/// cells than its middle. Of more than `most` samples, every n-th.
 std::vector<SurfaceSample> surfaceSamples(std::span<const PlacedModel> models, const ProximityGrid& shape,
                                           std::uint64_t most = std::uint64_t{1} << 23);
 

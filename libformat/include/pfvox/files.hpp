@@ -35,7 +35,8 @@ Result<FileBytes> readFile(const std::filesystem::path& file, std::uint64_t maxB
 
 /// An output that is written piece by piece under a temporary name in the folder of its target, and appears complete or
 /// not at all. commit() mostly waits for the disk: a tool that writes many files waits for several at once
-/// (docs/decisions/014-syncs.md).
+/// (docs/decisions/014-syncs.md). A symbolic link stays one, what it leads to is replaced; a device, pipe or socket is
+/// written to as it is, piece by piece.
 class AtomicFile {
   public:
     /// Creates missing parent folders. Errors: FileNotWritable.
@@ -55,10 +56,11 @@ class AtomicFile {
     Result<void> commit();
 
   private:
-    AtomicFile(std::filesystem::path file, std::filesystem::path temporary, int descriptor)
-        : file_(std::move(file)), temporary_(std::move(temporary)), descriptor_(descriptor) {}
+    AtomicFile(std::filesystem::path file, std::filesystem::path target, std::filesystem::path temporary, int descriptor)
+        : file_(std::move(file)), target_(std::move(target)), temporary_(std::move(temporary)), descriptor_(descriptor) {}
 
-    std::filesystem::path file_;
+    std::filesystem::path file_;       ///< as it was named
+    std::filesystem::path target_;     ///< without links; empty: written to as it is
     std::filesystem::path temporary_;  ///< empty once there is nothing to remove
     int descriptor_;                   ///< -1 once closed
 };

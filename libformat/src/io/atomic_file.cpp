@@ -22,6 +22,20 @@ bool writeAll(int fd, std::span<const std::byte> bytes) {
     return true;
 }
 
+/// What links lead to in the end, which need not be there.
+Result<std::filesystem::path> withoutLinks(const std::filesystem::path& file) {
+    constexpr int kMaxLinks = 40;  // as the kernel has it
+    std::filesystem::path target = file;
+    std::error_code error;
+    for (int i = 0; i < kMaxLinks; ++i) {
+        if (!std::filesystem::is_symlink(target, error)) return target;
+        target = target.parent_path() / std::filesystem::read_symlink(target, error);
+        if (error) break;
+    }
+    return tl::make_unexpected(
+        Error{.code = ErrorCode::FileNotWritable, .message = "cannot follow the link", .file = file});
+}
+
 }  // namespace
 
 Result<AtomicFile> AtomicFile::create(const std::filesystem::path& file) {
@@ -40,12 +54,19 @@ Result<AtomicFile> AtomicFile::create(const std::filesystem::path& file) {
         return tl::make_unexpected(
             Error{.code = ErrorCode::FileNotWritable, .message = "is a folder, not a file", .file = file});
     }
+    std::error_code error;
+    if (std::filesystem::exists(file, error) && !std::filesystem::is_regular_file(file, error)) {
+        Descriptor fd(::open(file.c_str(), O_WRONLY | O_CLOEXEC));
+        if (!fd.valid()) return systemError(ErrorCode::FileNotWritable, file, "cannot write");
+        return AtomicFile(file, {}, {}, fd.release());
+    }
+    PFVOX_TRY(std::filesystem::path, target, withoutLinks(file));
     static std::atomic<unsigned> serial{0};
-    std::filesystem::path temporary = file;
+    std::filesystem::path temporary = target;
     temporary += fmt::format(".tmp-{}-{}", ::getpid(), serial.fetch_add(1));
     Descriptor fd(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
     if (!fd.valid()) return systemError(ErrorCode::FileNotWritable, file, "cannot write");
-    return AtomicFile(file, std::move(temporary), fd.release());
+    return AtomicFile(file, std::move(target), std::move(temporary), fd.release());
 }
 
 Result<AtomicFile> AtomicFile::createWith(const std::filesystem::path& file, std::span<const std::byte> bytes) {
@@ -56,6 +77,7 @@ Result<AtomicFile> AtomicFile::createWith(const std::filesystem::path& file, std
 
 AtomicFile::AtomicFile(AtomicFile&& other) noexcept
     : file_(std::move(other.file_)),
+      target_(std::move(other.target_)),
       temporary_(std::exchange(other.temporary_, {})),
       descriptor_(std::exchange(other.descriptor_, -1)) {}
 
@@ -70,11 +92,13 @@ Result<void> AtomicFile::write(std::span<const std::byte> bytes) {
 }
 
 Result<void> AtomicFile::commit() {
-    if (::fsync(descriptor_) != 0) return systemError(ErrorCode::FileNotWritable, file_, "cannot sync");
+    const bool replaces = !target_.empty();
+    if (replaces && ::fsync(descriptor_) != 0)
+        return systemError(ErrorCode::FileNotWritable, file_, "cannot sync");
     // The kernel may report a delayed write error only here.
     if (::close(std::exchange(descriptor_, -1)) != 0)
         return systemError(ErrorCode::FileNotWritable, file_, "cannot close");
-    if (::rename(temporary_.c_str(), file_.c_str()) != 0)
+    if (replaces && ::rename(temporary_.c_str(), target_.c_str()) != 0)
         return systemError(ErrorCode::FileNotWritable, file_, "cannot rename the finished file into place");
     temporary_.clear();
     return {};

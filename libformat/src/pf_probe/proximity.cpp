@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <pfvox/probe_maths.hpp>
 #include <pfvox/proximity.hpp>
 
@@ -21,7 +22,7 @@ static_assert(kMaxSamplesPerCell + kCorners == 64, "a set of samples is one word
 struct View {
     std::size_t slot = 0;  ///< in CellSurfaces::cells
     std::uint64_t seen = 0;
-    float texels = 0;  ///< a square metre, summed over the samples seen
+    float texels = 0;  ///< a square metre, mean of the samples seen
 };
 
 struct Candidate {
@@ -67,9 +68,12 @@ class Eye {
                coder_.decode(depthCodeOf(word)) + shared::kSurfaceSlackMetres >= distance;
     }
 
-    float texelsPerSquareMetre(glm::vec3 point) const {
-        const float width = std::max(glm::distance(point, position_), 1e-3f) * shared::texelAngle(edge_);
-        return 1 / (width * width);
+    /// Of the sample's surface.
+    float texelsPerSquareMetre(const SurfaceSample& sample) const {
+        const glm::vec3 toPoint = sample.position - position_;
+        const float metres = std::max(glm::length(toPoint), 1e-3f);
+        const float width = metres * shared::texelAngle(edge_);
+        return std::abs(glm::dot(toPoint, sample.normal)) / (metres * width * width);
     }
 
   private:
@@ -160,14 +164,13 @@ class ProximityBuilder {
         for (std::size_t i = 0; i < samples.size(); ++i) {
             if (!eye.seesSample(samples[i])) continue;
             view.seen |= std::uint64_t{1} << i;
-            view.texels += eye.texelsPerSquareMetre(samples[i].position);
+            view.texels += eye.texelsPerSquareMetre(samples[i]);
         }
         if (view.seen == 0) return view;
+        view.texels /= static_cast<float>(std::popcount(view.seen));
         for (std::size_t i = 0; i < kCorners; ++i) {
             const glm::vec3 corner = cornerOf(input_.shape, input_.surfaces.cells[slot], i);
-            if (!eye.seesCorner(corner)) continue;
-            view.seen |= std::uint64_t{1} << (kMaxSamplesPerCell + i);
-            view.texels += eye.texelsPerSquareMetre(corner);
+            if (eye.seesCorner(corner)) view.seen |= std::uint64_t{1} << (kMaxSamplesPerCell + i);
         }
         return view;
     }
@@ -180,6 +183,11 @@ class ProximityBuilder {
                 byCell_[view.slot].push_back({static_cast<std::uint32_t>(probe), view.seen, view.texels});
     }
 
+    /// Samples that no other sees yet count, each by how fine a picture this probe has: by the width of its texels there.
+    static float gainOf(const Candidate& candidate, std::uint64_t covered) {
+        return static_cast<float>(std::popcount(candidate.seen & ~covered)) * std::sqrt(candidate.texels);
+    }
+
     void chooseProbes(std::size_t slot, ProximityBuild& build) {
         std::vector<Candidate> candidates = byCell_[slot];
         std::uint32_t* const list =
@@ -187,9 +195,9 @@ class ProximityBuilder {
         std::uint64_t covered = 0;
         for (std::size_t n = 0; n < kProbesPerCell && !candidates.empty(); ++n) {
             const auto isBetter = [&](const Candidate& a, const Candidate& b) {
-                const int newA = std::popcount(a.seen & ~covered);
-                const int newB = std::popcount(b.seen & ~covered);
-                if (newA != newB) return newA > newB;
+                const float gainA = gainOf(a, covered);
+                const float gainB = gainOf(b, covered);
+                if (gainA != gainB) return gainA > gainB;
                 if (a.texels != b.texels) return a.texels > b.texels;
                 return a.probe < b.probe;
             };
@@ -216,19 +224,19 @@ class ProximityBuilder {
 
 }  // namespace
 
+std::optional<std::uint32_t> cellOfSurface(const ProximityGrid& shape, const SurfaceSample& sample) {
+    const glm::vec3 at =
+        glm::floor(shared::proximityCoordinate(sample.position, sample.normal, shape.start, shape.step));
+    if (glm::any(glm::lessThan(at, glm::vec3{0})) || !glm::all(glm::lessThan(at, glm::vec3{shape.counts})))
+        return std::nullopt;
+    const glm::uvec3 cell{at};
+    return cell.x + shape.counts.x * (cell.y + shape.counts.y * cell.z);
+}
+
 CellSurfaces sortIntoCells(std::span<const SurfaceSample> samples, const ProximityGrid& shape) {
-    constexpr float kTowardsViewer = 1e-3f;  // of a cell
     std::vector<std::pair<std::uint32_t, std::size_t>> order;
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-        const glm::vec3 place =
-            glm::floor((samples[i].position - shape.start) / shape.step + kTowardsViewer * samples[i].normal);
-        if (glm::any(glm::lessThan(place, glm::vec3{0})) ||
-            !glm::all(glm::lessThan(place, glm::vec3{shape.counts}))) {
-            continue;
-        }
-        const glm::uvec3 cell{place};
-        order.emplace_back(cell.x + shape.counts.x * (cell.y + shape.counts.y * cell.z), i);
-    }
+    for (std::size_t i = 0; i < samples.size(); ++i)
+        if (const auto cell = cellOfSurface(shape, samples[i])) order.emplace_back(*cell, i);
     std::ranges::sort(order);
     CellSurfaces surfaces;
     for (const auto& [cell, i] : order) {
