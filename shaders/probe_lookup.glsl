@@ -2,7 +2,8 @@
 //
 //     tier 1  texels that see this very surface, of the cell's probes or of the eight around
 //     tier 3  the eight probes around, by their irradiance and moments (Majercik et al. 2019, "Dynamic Diffuse Global
-//             Illumination with Ray-Traced Irradiance Fields"); of a wider range where none of them sees the point
+//             Illumination with Ray-Traced Irradiance Fields"); outside of the grid more of them, as eight may all be
+//             in something
 //     tier 4  the nearest active probe
 //
 // Tiers are blended by how well the texels agree. Tier 2, tracing through the field, is probe_trace.glsl: it answers
@@ -42,12 +43,14 @@ float agreementOf(ProbeFieldRecord field, ProbeEntry probe, SurfacePoint point, 
     if (height >= 0.0) return 0.0;
     uint block = max(field.depthEdge / field.lightEdge, 1u);
     float tolerance = max(kPlaneVoxels * field.voxelMetres, kPlaneSlackShare * -height);
+    uint packed = packNormal(point.normal);
     uint agreeing = 0u;
     for (uint i = 0u; i < block * block; ++i) {
         uint x = min(uint(lightTexel.x) * block + i % block, field.depthEdge - 1u);
         uint y = min(uint(lightTexel.y) * block + i / block, field.depthEdge - 1u);
         uint word = ProbeWords(probe.depthNormal).at[x + field.depthEdge * y];
-        if (isMiss(word) || dot(normalOf(word), point.normal) <= kSurfaceMinNormalDot) continue;
+        if (isMiss(word)) continue;
+        if (word >> 16 != packed && dot(normalOf(word), point.normal) <= kSurfaceMinNormalDot) continue;
         float cosine = dot(directionOfTexel(x, y, field.depthEdge), point.normal);
         if (abs(metresOfCode(field, depthCodeOf(word)) * cosine - height) < tolerance) ++agreeing;
     }
@@ -76,6 +79,14 @@ vec4 lightSeenBy(ProbeFieldRecord field, ProbeEntry probe, SurfacePoint point) {
         covered += near.x * near.y * (share >= 1.0 ? 1.0 : 0.25 * share * share);
     }
     return sum.w > 0.0 ? vec4(sum.rgb / sum.w, min(kTexelConfidence * covered, 1.0)) : vec4(0.0);
+}
+
+// One read instead of all that lightSeenBy asks: most of the eight probes around see other things.
+bool ownTexelSees(ProbeFieldRecord field, ProbeEntry probe, SurfacePoint point) {
+    vec3 toPoint = point.position - probe.position;
+    if (dot(toPoint, toPoint) < 1e-12) return false;
+    uint word = ProbeWords(probe.depthNormal).at[texelIndex(toPoint, field.depthEdge)];
+    return seesSurface(word, toPoint, point.normal, field.depthEdge, field.depthScaleAndLogRange);
 }
 
 struct TexelSum {
@@ -108,8 +119,11 @@ vec4 lightOfTexels(ProbeFieldRecord field, SurfacePoint point) {
     }
     if (sum.unseen > kMuchUnseen) {
         ivec3 cell = probeCellOf(field, point.position);
-        for (uint corner = 0u; corner < 8u; ++corner)
-            if (cornerExists(field, corner)) addTexelsOf(field, probeAtCorner(field, cell, corner), point, sum);
+        for (uint corner = 0u; corner < 8u; ++corner) {
+            if (!cornerExists(field, corner)) continue;
+            ProbeEntry probe = probeAtCorner(field, cell, corner);
+            if (probe.isActive != 0u && ownTexelSees(field, probe, point)) addTexelsOf(field, probe, point, sum);
+        }
     }
     return sum.weighed.w > 0.0 ? vec4(sum.weighed.rgb / sum.weighed.w, 1.0 - sum.unseen) : vec4(0.0);
 }
@@ -185,7 +199,15 @@ void addProbe(ProbeFieldRecord field, ProbeEntry probe, SurfacePoint point, vec3
     sum.seen += near * visibility;
 }
 
-// The probes up to two steps away, by distance: where the nearest eight are all behind walls, or far outside of the grid.
+// 0 up to half a step outside of the probes, 1 from a whole step on.
+float outsideOfProbes(ProbeFieldRecord field, vec3 point) {
+    vec3 steps = (point - field.start) / field.step;
+    vec3 beyond = max(max(-steps, steps - vec3(field.counts - 1)), vec3(0.0));
+    return clamp(2.0 * max(beyond.x, max(beyond.y, beyond.z)) - 1.0, 0.0, 1.0);
+}
+
+// The probes up to two steps around the grid's nearest cell, by distance: where a point stands outside of the grid, those
+// eight may all stand in something.
 RootSum rootsOfWideRange(ProbeFieldRecord field, SurfacePoint point, vec3 biased, ivec3 cell) {
     RootSum sum = RootSum(vec4(0.0), 0.0);
     ivec3 low = max(cell - kWideSteps, ivec3(0));
@@ -215,10 +237,10 @@ vec4 lightOfGrid(ProbeFieldRecord field, SurfacePoint point) {
     }
     vec3 root = sum.weighed.rgb / max(sum.weighed.w, 1e-20);
     bool found = sum.weighed.w > 0.0;
-    if (sum.seen < kSeenEnough) {
+    float outside = outsideOfProbes(field, biased) * (1.0 - min(sum.seen / kSeenEnough, 1.0));
+    if (outside > 0.0) {
         RootSum wide = rootsOfWideRange(field, point, biased, cell);
-        float share = found ? sum.seen / kSeenEnough : 0.0;
-        if (wide.weighed.w > 0.0) root = mix(wide.weighed.rgb / wide.weighed.w, root, share);
+        if (wide.weighed.w > 0.0) root = mix(root, wide.weighed.rgb / wide.weighed.w, found ? outside : 1.0);
         found = found || wide.weighed.w > 0.0;
     }
     return found ? vec4(root * root, 1.0) : vec4(0.0);

@@ -68,7 +68,7 @@ void joinLastCubes(std::vector<Piece>& pieces, std::size_t first) {
                            .brick = nullptr,
                            .edge = static_cast<int>(parentEdge),
                            .material = lowest.material};
-        pieces.resize(pieces.size() - kChildren, parent);
+        pieces.erase(pieces.end() - static_cast<std::ptrdiff_t>(kChildren), pieces.end());
         pieces.push_back(parent);
     }
 }
