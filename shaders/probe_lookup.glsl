@@ -95,7 +95,6 @@ struct TexelSum {
 };
 
 void addTexelsOf(ProbeFieldRecord field, ProbeEntry probe, SurfacePoint point, inout TexelSum sum) {
-    if (probe.isActive == 0u) return;
     vec4 seen = lightSeenBy(field, probe, point);
     if (seen.w <= 0.0) return;
     vec3 toPoint = point.position - probe.position;
@@ -106,24 +105,24 @@ void addTexelsOf(ProbeFieldRecord field, ProbeEntry probe, SurfacePoint point, i
     sum.unseen *= 1.0 - seen.w;
 }
 
-// Of the probes that the cell names; where they do not see the point, of the eight around.
+// Of the probes that the cell names; where they do not see the point, of the eight around. One loop for both: drivers unroll
+// what they inline, and lightSeenBy is long.
 vec4 lightOfTexels(ProbeFieldRecord field, SurfacePoint point) {
     if (field.lightEdge == 0u || field.depthEdge == 0u) return vec4(0.0);
     uint list = proximityListOf(field, point.position, point.normal);
     if (list == kNoProbeIndex) return vec4(0.0);
+    ivec3 cell = probeCellOf(field, point.position);
     TexelSum sum = TexelSum(vec4(0.0), 1.0);
-    for (uint k = 0u; k < kProbesOfCell; ++k) {
-        uint index = ProbeWords(field.cells).at[list + k];
-        if (index == kNoProbeIndex) break;
-        addTexelsOf(field, ProbeEntries(field.probes).at[index], point, sum);
-    }
-    if (sum.unseen > kMuchUnseen) {
-        ivec3 cell = probeCellOf(field, point.position);
-        for (uint corner = 0u; corner < 8u; ++corner) {
-            if (!cornerExists(field, corner)) continue;
-            ProbeEntry probe = probeAtCorner(field, cell, corner);
-            if (probe.isActive != 0u && ownTexelSees(field, probe, point)) addTexelsOf(field, probe, point, sum);
-        }
+    for (uint k = 0u; k < kProbesOfCell + 8u; ++k) {
+        bool named = k < kProbesOfCell;
+        if (!named && sum.unseen <= kMuchUnseen) break;
+        uint corner = k - kProbesOfCell;
+        if (!named && !cornerExists(field, corner)) continue;
+        uint index = named ? ProbeWords(field.cells).at[list + k] : probeIndexAt(field, cell + cornerOffset(corner));
+        if (index == kNoProbeIndex) continue;
+        ProbeEntry probe = ProbeEntries(field.probes).at[index];
+        if (probe.isActive == 0u) continue;
+        if (named || ownTexelSees(field, probe, point)) addTexelsOf(field, probe, point, sum);
     }
     return sum.weighed.w > 0.0 ? vec4(sum.weighed.rgb / sum.weighed.w, 1.0 - sum.unseen) : vec4(0.0);
 }
@@ -206,42 +205,35 @@ float outsideOfProbes(ProbeFieldRecord field, vec3 point) {
     return clamp(2.0 * max(beyond.x, max(beyond.y, beyond.z)) - 1.0, 0.0, 1.0);
 }
 
-// The probes up to two steps around the grid's nearest cell, by distance: where a point stands outside of the grid, those
-// eight may all stand in something.
-RootSum rootsOfWideRange(ProbeFieldRecord field, SurfacePoint point, vec3 biased, ivec3 cell) {
-    RootSum sum = RootSum(vec4(0.0), 0.0);
-    ivec3 low = max(cell - kWideSteps, ivec3(0));
-    ivec3 high = min(cell + 1 + kWideSteps, field.counts - 1);
-    vec3 inside = clamp(biased, field.start, field.start + field.step * vec3(field.counts - 1));
-    for (int z = low.z; z <= high.z; ++z) {
-        for (int y = low.y; y <= high.y; ++y) {
-            for (int x = low.x; x <= high.x; ++x) {
-                ProbeEntry probe = ProbeEntries(field.probes).at[probeIndexAt(field, ivec3(x, y, z))];
-                vec3 steps = (probe.position - inside) / field.step;
-                addProbe(field, probe, point, biased, exp2(-dot(steps, steps)), sum);
-            }
-        }
-    }
-    return sum;
-}
-
+// Of the eight probes around, trilinear. Outside of the grid these may all stand in something: there of those up to two
+// steps further, by distance.
 vec4 lightOfGrid(ProbeFieldRecord field, SurfacePoint point) {
     vec3 biased = point.position + min(2.0 * field.voxelMetres, 0.2 * min(field.step.x, min(field.step.y, field.step.z))) * point.normal;
     ivec3 cell = probeCellOf(field, biased);
-    vec3 fraction = clamp((biased - field.start) / field.step - vec3(cell), vec3(0.0), vec3(1.0));
-    RootSum sum = RootSum(vec4(0.0), 0.0);
-    for (uint corner = 0u; corner < 8u; ++corner) {
-        if (!cornerExists(field, corner)) continue;
-        vec3 near = max(mix(1.0 - fraction, fraction, vec3(cornerOffset(corner))), vec3(0.001));
-        addProbe(field, probeAtCorner(field, cell, corner), point, biased, near.x * near.y * near.z, sum);
-    }
-    vec3 root = sum.weighed.rgb / max(sum.weighed.w, 1e-20);
-    bool found = sum.weighed.w > 0.0;
-    float outside = outsideOfProbes(field, biased) * (1.0 - min(sum.seen / kSeenEnough, 1.0));
-    if (outside > 0.0) {
-        RootSum wide = rootsOfWideRange(field, point, biased, cell);
-        if (wide.weighed.w > 0.0) root = mix(root, wide.weighed.rgb / wide.weighed.w, found ? outside : 1.0);
-        found = found || wide.weighed.w > 0.0;
+    ivec3 low = cell;
+    ivec3 high = min(cell + 1, field.counts - 1);
+    vec3 last = vec3(field.counts - 1);
+    vec3 inside = clamp((biased - field.start) / field.step, vec3(0.0), last);
+    vec3 root = vec3(0.0);
+    bool found = false;
+    float share = 1.0;  // of this round
+    for (uint round = 0u; round < 2u && share > 0.0; ++round) {
+        RootSum sum = RootSum(vec4(0.0), 0.0);
+        for (int z = low.z; z <= high.z; ++z) {
+            for (int y = low.y; y <= high.y; ++y) {
+                for (int x = low.x; x <= high.x; ++x) {
+                    vec3 apart = abs(vec3(x, y, z) - inside);
+                    vec3 near = max(1.0 - apart, vec3(0.001));
+                    float weight = round == 0u ? near.x * near.y * near.z : exp2(-dot(apart, apart));
+                    addProbe(field, ProbeEntries(field.probes).at[probeIndexAt(field, ivec3(x, y, z))], point, biased, weight, sum);
+                }
+            }
+        }
+        if (sum.weighed.w > 0.0) root = mix(root, sum.weighed.rgb / sum.weighed.w, found ? share : 1.0);
+        found = found || sum.weighed.w > 0.0;
+        share = outsideOfProbes(field, biased) * (1.0 - min(sum.seen / kSeenEnough, 1.0));
+        low = max(cell - kWideSteps, ivec3(0));
+        high = min(cell + 1 + kWideSteps, field.counts - 1);
     }
     return found ? vec4(root * root, 1.0) : vec4(0.0);
 }

@@ -119,7 +119,7 @@ ContentKey bakeContentKey(const LoadedScene& scene, const BakeSettings& settings
 
 /// Errors: BadValue (settings out of range, with their name), Cancelled (the observer asked to stop; resume
 /// takes the finished probes), FileNotWritable, GpuOutOfMemory, GpuLost, those of gpu::Scene::build and
-/// ProbeFileWriter. Diagnostics: bake-grid-outside (models stand out of the grid by more than half a step),
+/// ProbeFileWriter. Diagnostics: bake-grid-outside (models stand out of the grid by more than a step),
 /// bake-uncovered-cells, and those of the journal.
 Result<BakeReport> bakeProbes(gpu::Device& device, const LoadedScene& scene, const BakeSettings& settings,
                               const std::filesystem::path& output, BakeObserver& observer,
