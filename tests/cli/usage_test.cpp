@@ -136,6 +136,26 @@ TEST_F(Vox2pf, outputWithAnotherExtensionIsRefused) {
     EXPECT_FALSE(exists("a.bin"));
 }
 
+TEST_F(Vox2pf, outputThatIsAnotherFileIsRefusedAsSuch) {
+    const std::string before = readText(addSource("a.vox"));
+    const ProcessResult result = run({"a.vox", "-o", "a.vox"});
+    EXPECT_EQ(result.exitCode, 2);
+    EXPECT_THAT(result.err, HasSubstr("-o a.vox is a file, but no .pf_vox file"));
+    EXPECT_EQ(run({".", "-o", "a.vox"}).exitCode, 2);
+    EXPECT_EQ(readText(folder / "a.vox"), before);
+}
+
+TEST_F(Vox2pf, filesOfOtherKindsGetTheCommandThatReadsThem) {
+    writeText(folder / "old.pf_vox", "what the thesis program wrote, long enough for a header of 64 bytes and more");
+    EXPECT_THAT(run({"info", "old.pf_vox"}).err, HasSubstr("vox2pf old.pf_vox -o converted/"));
+    writeText(folder / "a.pf_probe", "probes, or what is called so");
+    EXPECT_THAT(run({"info", "a.pf_probe"}).err, HasSubstr("probe-bake info a.pf_probe"));
+    addSource("a.vox");
+    ASSERT_EQ(run({"a.vox", "-o", "a.pf_vox"}).exitCode, 0);
+    writeText(folder / "cut.pf_vox", readText(folder / "a.pf_vox").substr(0, 300));
+    EXPECT_THAT(run({"info", "cut.pf_vox"}).err, HasSubstr("convert the source again"));
+}
+
 TEST_F(Vox2pf, colorFollowsOptionAndEnvironment) {
     const auto errorOf = [&](const std::vector<std::string>& options, const ProcessSetup& setup) {
         std::vector<std::string> arguments{"none.vox", "-o", "x.pf_vox"};
