@@ -32,7 +32,7 @@ HelpText helpText() {
             "vox2pf converts voxel models to PF_VOX, the octree format of pfvox, and inspects such files.",
         .usage = {"vox2pf [convert] [options] <file | folder | @list | ->... -o <file | folder>",
                   "vox2pf info [options] <file.pf_vox>...", "vox2pf validate [options] <file.pf_vox>...",
-                  "vox2pf export [options] <file.pf_vox>... -o <file.vox | folder>"},
+                  "vox2pf export [options] <file.pf_vox>... -o <file.vox | file.vdb | folder>"},
         .examples = {{"vox2pf hall.vox -o hall.pf_vox", "convert one file"},
                      {"vox2pf assets -o build/assets", "convert a folder, keeping its tree"},
                      {"vox2pf info hall.pf_vox", "what is in it"}},
