@@ -102,12 +102,6 @@ ExitCode usageError(const CLI::App& command, const std::string& message) {
     return ExitCode::Usage;
 }
 
-ExitCode finishOutput(ExitCode exitCode) {
-    if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return exitCode;
-    print(stderr, "error: the results cannot be written to standard output: is the disk full?\n");
-    return exitCode == ExitCode::Ok ? ExitCode::CannotReadOrWrite : exitCode;
-}
-
 std::function<std::string(const std::string&)> numberFrom(double low, double high) {
     return [low, high](const std::string& text) -> std::string {
         double value = 0.0;

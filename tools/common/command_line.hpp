@@ -39,10 +39,6 @@ std::vector<std::string> withDefaultCommand(const CLI::App& tool, int argc, cons
 /// reported.
 std::optional<ExitCode> parseCommandLine(CLI::App& tool, const std::vector<std::string>& arguments);
 
-/// The last act of a tool: the exit code that it ends with, or CannotReadOrWrite when results did not reach standard output,
-/// as on a full disk.
-ExitCode finishOutput(ExitCode exitCode);
-
 /// Reports wrong usage that the parser cannot see.
 ExitCode usageError(const CLI::App& command, const std::string& message);
 

@@ -7,6 +7,7 @@
 #include <exception>
 #include <pfvox/pf_probe.hpp>
 
+#include "common/finish_output.hpp"
 #include "common/interrupt.hpp"
 #include "probe-bake/commands.hpp"
 

@@ -8,6 +8,7 @@
 #include <pfvox/import.hpp>
 #include <pfvox/pf_vox.hpp>
 
+#include "common/finish_output.hpp"
 #include "common/interrupt.hpp"
 #include "vox2pf/commands.hpp"
 
