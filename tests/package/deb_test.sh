@@ -5,7 +5,7 @@ source "$(dirname "$0")/lib.sh"
 work=$(new_folder deb)
 root=$PFVOX_WORK_DIR/debroot # where the other tests find it
 rm -rf "$root"
-cpack --config "$PFVOX_BUILD_DIR/CPackConfig.cmake" -G DEB -B "$work" -D CPACK_DEBIAN_COMPRESSION_TYPE=zstd >"$work/cpack.log" 2>&1 ||
+cpack --config "$PFVOX_BUILD_DIR/CPackConfig.cmake" -G DEB -B "$work" >"$work/cpack.log" 2>&1 ||
   { cat "$work/cpack.log"; fail "cpack"; }
 
 packages=(pfvox-tools libpfvox-dev)
