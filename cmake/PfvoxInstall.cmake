@@ -67,4 +67,4 @@ install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/libpfvox-dev
   PATTERN build EXCLUDE PATTERN generator EXCLUDE)
 # As they lie in the sources, so that their links lead somewhere.
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/libpfvox-dev COMPONENT dev
-  FILES_MATCHING PATTERN "*.md" PATTERN "*.schema.json" PATTERN "images/*.png")
+  FILES_MATCHING PATTERN "*.md" PATTERN "*.schema.json" REGEX "/images/[^/]+$")
