@@ -95,17 +95,28 @@ function(_pfvox_depfile result output)
   set(${result} "${folder}/${name}.d" PARENT_SCOPE)
 endfunction()
 
+# What follows DEPFILE in the command of a source. ninja reads no depfile with names such as "Bob's.vox": it would run the command in
+# every build. That of a model is not needed, since it names nothing but the source.
+function(_pfvox_depfile_arguments result depfile source output)
+  set(arguments DEPFILE "${depfile}")
+  if(CMAKE_GENERATOR MATCHES "Ninja" AND NOT source MATCHES "\\.toml$" AND "${source}${output}" MATCHES "['\"`&*?\$^]")
+    set(arguments "")
+  endif()
+  set(${result} "${arguments}" PARENT_SCOPE)
+endfunction()
+
 # The custom command for one source. Reads base_dir, output_dir, options, settings and inputs of the caller.
 function(_pfvox_convert source output)
   cmake_path(RELATIVE_PATH source BASE_DIRECTORY "${base_dir}" OUTPUT_VARIABLE relative)
   _pfvox_depfile(depfile "${output}")
+  _pfvox_depfile_arguments(depfile_arguments "${depfile}" "${source}" "${output}")
   _pfvox_time_stamp_option(time_stamps)
   # One thread: the build system runs as many of these commands as there are processors.
   add_custom_command(OUTPUT "${output}"
     COMMAND pfvox::vox2pf convert -j 1 ${time_stamps} --base-dir "${base_dir}" ${settings} --depfile "${depfile}"
             ${options} "${source}" -o "${output_dir}/"
     DEPENDS pfvox::vox2pf "${source}" ${inputs}
-    DEPFILE "${depfile}"
+    ${depfile_arguments}
     COMMENT "Converting ${relative}"
     VERBATIM COMMAND_EXPAND_LISTS)
 endfunction()

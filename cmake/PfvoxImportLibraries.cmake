@@ -17,4 +17,8 @@ mark_as_advanced(PFVOX_OPENVDB_MODULE_DIR)
 if(PFVOX_OPENVDB_MODULE_DIR)
   list(APPEND CMAKE_MODULE_PATH ${PFVOX_OPENVDB_MODULE_DIR})
 endif()
+# Debian's package of Imath, which OpenVDB asks for, says that it may be faulty where Python's part of it is not installed.
+set(pfvox_log_level ${CMAKE_MESSAGE_LOG_LEVEL})
+set(CMAKE_MESSAGE_LOG_LEVEL WARNING)
 find_package(OpenVDB 10 REQUIRED COMPONENTS openvdb)
+set(CMAKE_MESSAGE_LOG_LEVEL ${pfvox_log_level})

@@ -65,5 +65,6 @@ install(FILES ${PROJECT_BINARY_DIR}/cmake/pfvox-format.pc DESTINATION ${CMAKE_IN
 
 install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/libpfvox-dev COMPONENT dev USE_SOURCE_PERMISSIONS
   PATTERN build EXCLUDE PATTERN generator EXCLUDE)
-install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/libpfvox-dev COMPONENT dev
-  FILES_MATCHING PATTERN "*.md" PATTERN "*.schema.json" PATTERN images EXCLUDE)
+# As they lie in the sources, so that their links lead somewhere.
+install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/libpfvox-dev COMPONENT dev
+  FILES_MATCHING PATTERN "*.md" PATTERN "*.schema.json" REGEX "/images/[^/]+$")

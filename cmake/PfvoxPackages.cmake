@@ -61,10 +61,10 @@ Headers and static libraries that read, build, trace and bake sparse voxel
 octrees; a CMake package with pfvox_add_assets() and pfvox_add_probe_bake(),
 which make voxel assets and their light parts of a build; examples.")
 
+include(PfvoxPackageNotes)
 foreach(component IN LISTS CPACK_COMPONENTS_ALL)
   string(TOUPPER ${component} upper)
-  install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${CPACK_DEBIAN_${upper}_PACKAGE_NAME}
-    RENAME copyright COMPONENT ${component})
+  pfvox_install_notes(${component} ${CPACK_DEBIAN_${upper}_PACKAGE_NAME})
 endforeach()
 
 include(CPack)

@@ -43,6 +43,17 @@ TEST_F(Vox2pfExport, contradictionsAreWrongUsage) {
     EXPECT_FALSE(exists("a.vdb") || exists("back"));
 }
 
+TEST_F(Vox2pfExport, aFileOfAnotherKindIsNoFolder) {
+    const ProcessResult result = run({"export", "courtyard.pf_vox", "-o", "courtyard.obj"});
+    EXPECT_EQ(result.exitCode, 2);
+    EXPECT_THAT(result.err, HasSubstr("-o courtyard.obj is neither a .vox or .vdb file nor a folder"));
+    EXPECT_FALSE(exists("courtyard.obj"));
+    EXPECT_EQ(run({"export", "courtyard.pf_vox", "-o", "courtyard.pf_vox"}).exitCode, 2);
+    EXPECT_EQ(run({"export", "courtyard.pf_vox", "-o", "release.2/"}).exitCode, 0);
+    EXPECT_EQ(run({"export", ".", "-o", "release.3"}).exitCode, 0);
+    EXPECT_TRUE(exists("release.2/courtyard.vox") && exists("release.3/courtyard.vox"));
+}
+
 TEST_F(Vox2pfExport, aFailureLeavesThePreviousOutput) {
     writeText(folder / "a.vdb", "before");
     const ProcessResult result =

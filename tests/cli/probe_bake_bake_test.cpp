@@ -27,6 +27,22 @@ class ProbeBakeScene : public ProbeBake {
         "probeGridPos = [-0.5, 0.3, -0.5]\nprobeGridStep = 1.1\nprobeGridCount = [3, 2, 3]\nproximityGridSize = [8, 8, 8]\n";
 };
 
+TEST_F(ProbeBakeScene, WarningsNameTheSceneOnce) {
+    writeText(folder / "a.toml", "colour = 1\n[[models]]\npath = \"box.pf_vox\"\n");
+    const ProcessResult result = run({"a.toml", "-o", "a.pf_probe", "--dry-run"});
+    EXPECT_EQ(result.exitCode, 0);
+    EXPECT_THAT(result.err, ::testing::StartsWith("warning: a.toml: line 1, column 1: unknown key colour"));
+}
+
+TEST_F(ProbeBakeScene, WithoutADriverTheRemedyIsNamed) {
+    const ProcessResult result =
+        runProcess({PFVOX_PROBE_BAKE, "box.pf_vox", "-o", "a.pf_probe"},
+                   {.environment = {"VK_DRIVER_FILES=/nowhere", "VK_ICD_FILENAMES=/nowhere"}, .input = {}, .folder = folder.path()});
+    EXPECT_EQ(result.exitCode, 6);
+    EXPECT_THAT(result.err, HasSubstr("no Vulkan driver is installed"));
+    EXPECT_FALSE(std::filesystem::exists(folder / "a.pf_probe"));
+}
+
 TEST_F(ProbeBakeScene, BakesAndLeavesAloneWhatIsUpToDate) {
     writeScene("scene.toml", "box.pf_vox", kGrid);
     const ProcessResult baked = run(tiny({"scene.toml", "-o", "out.pf_probe", "--json", "--depfile", "out.d"}));

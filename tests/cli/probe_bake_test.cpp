@@ -57,6 +57,8 @@ TEST_F(ProbeBake, InfoOfSomethingElseFails) {
     writeText(folder / "a.pf_probe", "no probe file at all, but long enough to hold a header of one");
     EXPECT_EQ(run({"info", "a.pf_probe"}).exitCode, 4);
     EXPECT_EQ(run({"info", "absent.pf_probe"}).exitCode, 3);
+    std::filesystem::copy_file(std::filesystem::path(PFVOX_TESTS_DIR) / "golden/data/v1_0.pf_vox", folder / "b.pf_probe");
+    EXPECT_THAT(run({"info", "b.pf_probe"}).err, HasSubstr("but PF_VOX, which vox2pf reads"));
 }
 
 TEST_F(ProbeBake, ValidateFindsDamage) {
@@ -105,7 +107,10 @@ TEST_F(ProbeBake, CompareRefusesOtherGrids) {
     const ProcessResult result = run({"compare", "a.pf_probe", "b.pf_probe"});
     EXPECT_EQ(result.exitCode, 4);
     EXPECT_THAT(result.err, HasSubstr("grid"));
-    EXPECT_EQ(run({"compare", "a.pf_probe"}).exitCode, 2);
+    EXPECT_THAT(result.err, HasSubstr("b.pf_probe: cannot be compared with the first file"));
+    const ProcessResult one = run({"compare", "a.pf_probe"});
+    EXPECT_EQ(one.exitCode, 2);
+    EXPECT_THAT(one.err, HasSubstr("two files are compared, and only one was named"));
 }
 
 TEST_F(ProbeBake, MergeGivesTheWhole) {

@@ -1,5 +1,7 @@
 // Help, version and wrong usage: what is printed where, and the exit code.
 
+#include <unistd.h>
+
 #include "cli/vox2pf_fixture.hpp"
 
 namespace pfvox::test {
@@ -134,6 +136,51 @@ TEST_F(Vox2pf, outputWithAnotherExtensionIsRefused) {
     EXPECT_EQ(result.exitCode, 2);
     EXPECT_THAT(result.err, HasSubstr(".pf_vox"));
     EXPECT_FALSE(exists("a.bin"));
+}
+
+TEST_F(Vox2pf, outputThatIsAnotherFileIsRefusedAsSuch) {
+    const std::string before = readText(addSource("a.vox"));
+    const ProcessResult result = run({"a.vox", "-o", "a.vox"});
+    EXPECT_EQ(result.exitCode, 2);
+    EXPECT_THAT(result.err, HasSubstr("-o a.vox is a file, but no .pf_vox file"));
+    EXPECT_EQ(run({".", "-o", "a.vox"}).exitCode, 2);
+    EXPECT_EQ(readText(folder / "a.vox"), before);
+}
+
+TEST_F(Vox2pf, resultsThatCannotBeWrittenAreAFailure) {
+    addSource("a.vox");
+    ASSERT_EQ(run({"a.vox", "-o", "a.pf_vox"}).exitCode, 0);
+    const ProcessResult result = runProcess({"/bin/sh", "-c", "exec \"$0\" info --json a.pf_vox > /dev/full", PFVOX_VOX2PF},
+                                            {.environment = {}, .input = {}, .folder = folder.path()});
+    EXPECT_EQ(result.exitCode, 3);
+    EXPECT_THAT(result.err, HasSubstr("standard output"));
+}
+
+TEST_F(Vox2pf, aFolderThatCannotBeSearchedIsNamed) {
+    namespace fs = std::filesystem;
+    addSource("assets/a.vox");
+    fs::create_directories(folder / "assets/locked");
+    fs::permissions(folder / "assets/locked", fs::perms::none);
+    std::vector<std::string> command{PFVOX_VOX2PF, "assets", "-o", "out"};
+    if (::geteuid() == 0) {  // who may search everything
+        fs::permissions(folder.path(), fs::perms::all);
+        command.insert(command.begin(), {"/usr/bin/setpriv", "--reuid=65534", "--regid=65534", "--clear-groups"});
+    }
+    const ProcessResult result = runProcess(command, {.environment = {}, .input = {}, .folder = folder.path()});
+    fs::permissions(folder / "assets/locked", fs::perms::owner_all);
+    EXPECT_EQ(result.exitCode, 3);
+    EXPECT_THAT(result.err, HasSubstr("assets/locked: cannot search this folder"));
+}
+
+TEST_F(Vox2pf, filesOfOtherKindsGetTheCommandThatReadsThem) {
+    writeText(folder / "old.pf_vox", "what the thesis program wrote, long enough for a header of 64 bytes and more");
+    EXPECT_THAT(run({"info", "old.pf_vox"}).err, HasSubstr("vox2pf old.pf_vox -o converted/"));
+    writeText(folder / "a.pf_probe", "probes, or what is called so");
+    EXPECT_THAT(run({"info", "a.pf_probe"}).err, HasSubstr("probe-bake info a.pf_probe"));
+    addSource("a.vox");
+    ASSERT_EQ(run({"a.vox", "-o", "a.pf_vox"}).exitCode, 0);
+    writeText(folder / "cut.pf_vox", readText(folder / "a.pf_vox").substr(0, 300));
+    EXPECT_THAT(run({"info", "cut.pf_vox"}).err, HasSubstr("convert the source again"));
 }
 
 TEST_F(Vox2pf, colorFollowsOptionAndEnvironment) {

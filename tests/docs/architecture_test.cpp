@@ -15,6 +15,7 @@ namespace {
 using ::testing::ContainerEq;
 using ::testing::SizeIs;
 using ::testing::Gt;
+using ::testing::HasSubstr;
 using Arrows = std::set<std::string>;
 
 std::string architecture() { return readText(kProjectDir / "docs/architecture.md"); }
@@ -62,6 +63,17 @@ TEST(Architecture, RoomsAreThere) {
             EXPECT_TRUE(std::filesystem::exists(kProjectDir / (*path)[1].str())) << (*path)[1];
     }
     EXPECT_GT(rooms, 15);
+}
+
+TEST(Architecture, NoFolderIsForgotten) {
+    const std::string text = architecture();
+    for (const char* const parent : {"libformat/src", "libbake/src", "tools", "viewer/src"}) {
+        for (const auto& entry : std::filesystem::directory_iterator(kProjectDir / parent)) {
+            const std::string room = parent + ("/" + entry.path().filename().string());
+            if (!entry.is_directory()) continue;
+            EXPECT_THAT(text, HasSubstr("`" + room + "`"));
+        }
+    }
 }
 
 }  // namespace

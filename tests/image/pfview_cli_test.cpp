@@ -181,5 +181,11 @@ TEST_F(PfviewCli, ListsDevices) {
     EXPECT_THAT(r.out, StartsWith("0  "));
 }
 
+TEST_F(PfviewCli, ResultsThatCannotBeWrittenAreAFailure) {
+    const Outcome r = run("--list-devices > /dev/full 2> err; exit $?; :");  // what run() appends is for the last word
+    EXPECT_EQ(r.exitCode, 3);
+    EXPECT_THAT(r.err, HasSubstr("standard output"));
+}
+
 }  // namespace
 }  // namespace pfvox::test

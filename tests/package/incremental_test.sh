@@ -12,13 +12,13 @@ assets=$source/assets
 out="$work/build/built assets"
 log=$work/build.log
 plain=$out/plain.pf_vox
-words="$out/more props/two words.pf_vox"
+words="$out/more props/it's two words.pf_vox"
 
 mkdir -p "$assets/more props"
 cp "$PFVOX_SOURCE_DIR/tests/package/assets-project/CMakeLists.txt" "$source"
 cp "$PFVOX_SOURCE_DIR/data/lamp.vox" "$assets/plain.vox"
 cp "$PFVOX_SOURCE_DIR/data/lamp.vox" "$assets/original.vox"
-cp "$PFVOX_SOURCE_DIR/data/tree.vox" "$assets/more props/two words.vox"
+cp "$PFVOX_SOURCE_DIR/data/tree.vox" "$assets/more props/it's two words.vox"
 printf '[[override]]\nfiles = "more props/**"\nimport.voxelSizeMetres = 0.2\n' >"$assets/pfvox.toml"
 # One model that this build makes, one that it knows from the depfile only.
 mkdir "$work/extern"
@@ -63,7 +63,7 @@ if [ "$PFVOX_GPU" = ON ]; then
 else
   scene=()
 fi
-both=("Converting plain.vox" "Converting more props/two words.vox")
+both=("Converting plain.vox" "Converting more props/it's two words.vox")
 
 configure "$source" "$work/build" "$prefix" "$generator" || { cat "$work/build.configure.log"; fail "configure"; }
 

@@ -24,6 +24,14 @@ for program in "$installed"/bin/*; do
   if readelf -d "$program" | grep -E 'R(UN)?PATH'; then fail "$program has a run path"; fi
 done
 
+# Links of the installed documents lead to installed files.
+documents=$installed/share/doc/libpfvox-dev
+expect_file "$documents/docs/cmake.md"
+while IFS=: read -r document target; do
+  target=${target#](}
+  [ -e "$(dirname "$document")/${target%%[#)]*}" ] || fail "$document links to $target, which is not installed"
+done < <(grep -roE --include='*.md' '\]\([^)#:]+[)#]' "$documents/docs" "$documents/examples")
+
 expect_tools_work "$installed" "$work"
 
 # A tree without the module says what is missing.

@@ -65,20 +65,7 @@ class Collector {
 
     Result<void> addFolder(const fs::path& folder) {
         std::vector<fs::path> found;
-        std::error_code error;
-        auto entry = fs::recursive_directory_iterator(folder, error);
-        for (; !error && entry != fs::recursive_directory_iterator(); entry.increment(error)) {
-            std::error_code ignored;
-            if (entry->is_directory(ignored)) {
-                if (isSkipped(entry->path())) entry.disable_recursion_pending();
-                continue;
-            }
-            if (query_.wanted(entry->path()) && entry->is_regular_file(ignored))
-                found.push_back(entry->path());
-        }
-        if (error)
-            return failOn(ErrorCode::FileNotReadable, folder,
-                          "cannot search this folder: " + error.message());
+        PFVOX_CHECK(search(folder, found));
         if (found.empty())
             return failOn(ErrorCode::NothingToConvert, folder, "no input files in this folder");
         std::ranges::sort(found);
@@ -86,6 +73,22 @@ class Collector {
             add({.file = file, .relative = file.lexically_relative(folder), .fromFolder = true});
         }
         return {};
+    }
+
+    /// Folder by folder, since recursive_directory_iterator does not tell in which one it failed.
+    Result<void> search(const fs::path& folder, std::vector<fs::path>& found) const {
+        std::error_code error;
+        auto entry = fs::directory_iterator(folder, error);
+        for (; !error && entry != fs::directory_iterator(); entry.increment(error)) {
+            std::error_code ignored;
+            if (!entry->is_directory(ignored)) {
+                if (query_.wanted(entry->path()) && entry->is_regular_file(ignored)) found.push_back(entry->path());
+            } else if (!entry->is_symlink(ignored) && !isSkipped(entry->path())) {
+                PFVOX_CHECK(search(entry->path(), found));
+            }
+        }
+        if (!error) return {};
+        return failOn(ErrorCode::FileNotReadable, folder, "cannot search this folder: " + error.message());
     }
 
     bool isSkipped(const fs::path& folder) const {

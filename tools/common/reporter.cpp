@@ -87,8 +87,11 @@ void Reporter::diagnostics(const std::filesystem::path& file, std::span<const Di
         if (!isWarning && settings_.verbosity != Verbosity::Verbose) continue;
         const std::string place =
             entry.offsetBytes ? fmt::format(" @0x{:x}", *entry.offsetBytes) : std::string();
+        // Messages about a scene and its files name the file themselves.
+        const bool namesFile = entry.message.starts_with(file.string() + ":");
+        const std::string subject = namesFile ? std::string() : file.string() + place + ": ";
         message(isWarning ? "warning" : "note", isWarning ? "\x1b[1;33m" : "\x1b[36m",
-                fmt::format("{}{}: {} [{}]", file.string(), place, entry.message, entry.id));
+                fmt::format("{}{} [{}]", subject, entry.message, entry.id));
     }
 }
 

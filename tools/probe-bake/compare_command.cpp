@@ -102,6 +102,7 @@ ExitCode runCompare(const CLI::App& command, const CompareOptions& options) {
     Reporter reporter(options.common.reporterSettings());
     const auto limits = parseLimits(options.common.limits);
     if (!limits) return usageError(command, limits.error());
+    if (options.files.size() != 2) return usageError(command, "two files are compared, and only one was named");
     const auto stopWith = [&](const Error& error) {
         reporter.error(error);
         return exitCodeOf(error.code);
@@ -111,8 +112,11 @@ ExitCode runCompare(const CLI::App& command, const CompareOptions& options) {
     if (!first) return stopWith(first.error());
     const auto second = ProbeFileReader::open(options.files[1], *limits, diagnostics);
     if (!second) return stopWith(second.error());
-    const auto difference = compareFields(*first, *second);
-    if (!difference) return stopWith(difference.error());
+    auto difference = compareFields(*first, *second);
+    if (!difference) {
+        if (difference.error().file.empty()) difference.error().file = options.files[1];
+        return stopWith(difference.error());
+    }
     if (options.common.json) reporter.jsonLine(jsonText(differenceJson(options, *difference)));
     reporter.result(differenceText(*difference));
     const std::string tooFar = complaint(options, *difference);
@@ -128,7 +132,7 @@ Command makeCompareCommand(CLI::App& tool) {
     CLI::App& command = addCommand(tool, "compare", helpText());
     command.add_option("input", options->files)
         ->required()
-        ->expected(2)
+        ->expected(1, 2)
         ->check(suggestFiles({kPfProbeExtension}))
         ->group(group::kInputOutput);
     command.add_flag("--equal", options->requireEqual, "fail unless the hashes of all probes are equal")

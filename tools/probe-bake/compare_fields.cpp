@@ -102,7 +102,7 @@ Result<void> checkComparable(const ProbeFieldInfo& a, const ProbeFieldInfo& b) {
     add(a.resolution != b.resolution, "resolution");
     add(a.depth != b.depth, "depth encoding");
     if (what.empty()) return {};
-    return fail(ErrorCode::BadStructure, "the files cannot be compared: they differ in " + what);
+    return fail(ErrorCode::BadStructure, "cannot be compared with the first file: they differ in " + what);
 }
 
 std::vector<std::string> settingsApart(const ProbeFieldInfo& a, const ProbeFieldInfo& b) {

@@ -7,6 +7,7 @@
 #include <exception>
 #include <pfvox/pf_probe.hpp>
 
+#include "common/finish_output.hpp"
 #include "common/interrupt.hpp"
 #include "probe-bake/commands.hpp"
 
@@ -60,7 +61,7 @@ ExitCode run(int argc, char** argv) {
 int main(int argc, char** argv) {
     using pfvox::tools::ExitCode;
     try {
-        return static_cast<int>(pfvox::tools::run(argc, argv));
+        return static_cast<int>(pfvox::tools::finishOutput(pfvox::tools::run(argc, argv)));
     } catch (const std::exception& exception) {
         std::fprintf(stderr, "error: internal error: %s; please report it with the command line\n", exception.what());
         return static_cast<int>(ExitCode::Internal);

@@ -37,15 +37,32 @@ HelpText helpText() {
                          {"vox2pf export build/assets --format vdb -o back", "every PF_VOX file of a folder, into one folder"}}};
 }
 
+/// Whether a path that is to be a folder was rather meant as a file of a kind that nobody writes.
+bool looksLikeOtherFile(const ExportOptions& options) {
+    namespace fs = std::filesystem;
+    std::error_code error;
+    const fs::path output = options.output;
+    if (fs::exists(output, error)) return !fs::is_directory(output, error);
+    const bool oneFile = options.inputs.size() == 1 && !fs::is_directory(options.inputs.front(), error);
+    return oneFile && output.has_filename() && output.has_extension();
+}
+
 /// A name that ends in .vox or .vdb is the file itself, anything else a folder for files of the sources' names.
-/// Nothing when name and format contradict each other.
-std::optional<Target> targetOf(const ExportOptions& options) {
+/// What is wrong, when name and format contradict each other.
+tl::expected<Target, std::string> targetOf(const ExportOptions& options) {
     Target target{.output = options.output, .format = options.format};
     const std::string extension = target.output.extension().string();
     target.isFile = extension == ".vox" || extension == ".vdb";
+    if (!target.isFile && looksLikeOtherFile(options)) {
+        return tl::make_unexpected(fmt::format(
+            "-o {0} is neither a .vox or .vdb file nor a folder: name one of these, or write {0}/", options.output));
+    }
     const std::string named = target.isFile ? extension.substr(1) : kVox;
     if (target.format.empty()) target.format = named;
-    if (target.isFile && target.format != named) return std::nullopt;
+    if (target.isFile && target.format != named) {
+        return tl::make_unexpected(
+            fmt::format("--format {} contradicts the name of the output, {}", options.format, options.output));
+    }
     return target;
 }
 
@@ -84,10 +101,7 @@ Command makeExportCommand(CLI::App& tool) {
 
     const auto run = [&command, options] {
         const auto target = targetOf(*options);
-        if (!target) {
-            return usageError(command, fmt::format("--format {} contradicts the name of the output, {}",
-                                                   options->format, options->output));
-        }
+        if (!target) return usageError(command, target.error());
         std::set<std::filesystem::path> written;
         const auto visit = [&](const std::filesystem::path& file, const Limits& limits,
                                Reporter& reporter) -> std::optional<ErrorCode> {

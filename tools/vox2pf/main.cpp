@@ -8,6 +8,7 @@
 #include <pfvox/import.hpp>
 #include <pfvox/pf_vox.hpp>
 
+#include "common/finish_output.hpp"
 #include "common/interrupt.hpp"
 #include "vox2pf/commands.hpp"
 
@@ -32,7 +33,7 @@ HelpText helpText() {
             "vox2pf converts voxel models to PF_VOX, the octree format of pfvox, and inspects such files.",
         .usage = {"vox2pf [convert] [options] <file | folder | @list | ->... -o <file | folder>",
                   "vox2pf info [options] <file.pf_vox>...", "vox2pf validate [options] <file.pf_vox>...",
-                  "vox2pf export [options] <file.pf_vox>... -o <file.vox | folder>"},
+                  "vox2pf export [options] <file.pf_vox>... -o <file.vox | file.vdb | folder>"},
         .examples = {{"vox2pf hall.vox -o hall.pf_vox", "convert one file"},
                      {"vox2pf assets -o build/assets", "convert a folder, keeping its tree"},
                      {"vox2pf info hall.pf_vox", "what is in it"}},
@@ -66,7 +67,7 @@ ExitCode run(int argc, char** argv) {
 int main(int argc, char** argv) {
     using pfvox::tools::ExitCode;
     try {
-        return static_cast<int>(pfvox::tools::run(argc, argv));
+        return static_cast<int>(pfvox::tools::finishOutput(pfvox::tools::run(argc, argv)));
     } catch (const std::exception& exception) {
         std::fprintf(stderr, "error: internal error: %s; please report it with the command line\n",
                      exception.what());

@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <pfvox/error.hpp>
 
+#include "common/finish_output.hpp"
 #include "headless.hpp"
 #include "options.hpp"
 #include "report.hpp"
@@ -55,7 +56,7 @@ int main(int argc, char** argv) {
     const Options& options = std::get<Options>(parsed);
     ConsoleDiagnostics diagnostics(options.quiet);
     const Result<void> done = run(options, diagnostics);
-    if (done) return 0;
+    if (done) return static_cast<int>(tools::finishOutput(tools::ExitCode::Ok));
     std::fprintf(stderr, "pfview: %s\n", describe(done.error()).c_str());
     return exitCodeOf(done.error().code);
 }

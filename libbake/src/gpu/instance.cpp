@@ -229,7 +229,12 @@ Result<Instance> createInstance(const DeviceOptions& options) {
             info.setPEnabledLayerNames(layers);
         }
         info.setPEnabledExtensionNames(extensions);
-        made.instance = vk::raii::Instance(made.context, info);
+        try {
+            made.instance = vk::raii::Instance(made.context, info);
+        } catch (const vk::IncompatibleDriverError&) {
+            throw std::runtime_error(
+                "no Vulkan driver is installed; llvmpipe runs on every processor (Debian: mesa-vulkan-drivers)");
+        }
         if (validation) made.messenger = vk::raii::DebugUtilsMessengerEXT(made.instance, messenger);
         return made;
     });

@@ -48,8 +48,11 @@ Result<void> Container::readHeader() {
     const auto present = std::span(bytes).first(std::min<std::uint64_t>(size, bytes.size()));
     PFVOX_CHECK(source_.readAt(0, present));
     const std::size_t magicBytes = std::min(present.size(), probe_layout::kMagic.size());
-    if (magicBytes == 0 || std::memcmp(bytes.data(), probe_layout::kMagic.data(), magicBytes) != 0)
-        return failAt(ErrorCode::BadMagic, 0, "header", "not a PF_PROBE file");
+    if (magicBytes == 0 || std::memcmp(bytes.data(), probe_layout::kMagic.data(), magicBytes) != 0) {
+        const bool isPfVox = std::memcmp(bytes.data(), layout::kMagic.data(), layout::kMagic.size()) == 0;
+        return failAt(ErrorCode::BadMagic, 0, "header",
+                      isPfVox ? "not a PF_PROBE file but PF_VOX, which vox2pf reads" : "not a PF_PROBE file");
+    }
     if (present.size() < bytes.size())
         return failAt(ErrorCode::Truncated, size, "header", "the file ends inside its header");
     std::memcpy(&header_, bytes.data(), sizeof header_);
@@ -67,7 +70,8 @@ Result<void> Container::readHeader() {
     }
     if (header_.fileBytes > size) {
         return failAt(ErrorCode::Truncated, size, "header",
-                      fmt::format("the file should have {} bytes and has {}", header_.fileBytes, size));
+                      fmt::format("the file should have {} bytes and has {}: copy it again, or bake again",
+                                  header_.fileBytes, size));
     }
     if (header_.fileBytes < size) {
         return failAt(ErrorCode::BadStructure, header_.fileBytes, "header",
@@ -91,7 +95,7 @@ Result<void> Container::readTable() {
     std::memcpy(hashed.data(), &hashedHeader, sizeof hashedHeader);
     std::ranges::copy(table, hashed.begin() + sizeof hashedHeader);
     if (io::xxh3_64(hashed) != header_.headHash)
-        return failAt(ErrorCode::ChecksumMismatch, 0, "header", "header or section table is damaged");
+        return failAt(ErrorCode::ChecksumMismatch, 0, "header", "header or section table is damaged: bake again");
     return {};
 }
 
