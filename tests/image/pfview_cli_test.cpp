@@ -63,6 +63,34 @@ TEST_F(PfviewCli, WrongUsageIsShortAndOnStderr) {
     }
 }
 
+TEST_F(PfviewCli, WhatIsMisspeltIsNamedWithWhatThereIs) {
+    writeRoom("a.pf_vox");
+    EXPECT_THAT(run("a.pf_vox --screnshot a.png").err, HasSubstr("unknown option --screnshot; did you mean --screenshot?"));
+    const std::string view = run("a.pf_vox --screenshot a.png --view nromals").err;
+    EXPECT_THAT(view, HasSubstr("did you mean normals?"));
+    EXPECT_THAT(view, HasSubstr("atlas-normals or atlas-depth"));
+    EXPECT_THAT(run("a.pf_vox --screenshot a.png --tonemap film").err, HasSubstr("reinhard, aces or neutral"));
+    const Outcome picture = run("a.pf_vox --screenshot a.jpg");
+    EXPECT_EQ(picture.exitCode, 2);
+    EXPECT_THAT(picture.err, HasSubstr("'a.jpg' does not end in .png"));
+    EXPECT_FALSE(fs::exists(folder_ / "a.jpg"));
+    EXPECT_EQ(run("a.pf_vox --screenshot A.PNG --size 8x8").exitCode, 0);
+}
+
+TEST_F(PfviewCli, DamagedFilesSayWhatToDo) {
+    writeRoom("a.pf_vox");
+    const std::string good = contentOf(folder_ / "a.pf_vox");
+    write("b.pf_vox", good.substr(0, good.size() - 9));
+    EXPECT_THAT(run("b.pf_vox --screenshot a.png").err, HasSubstr("convert its source again"));
+    std::string other = good;
+    other[8] = 2;  // the major version
+    write("b.pf_vox", other);
+    EXPECT_THAT(run("b.pf_vox --screenshot a.png").err,
+                HasSubstr("PF_VOX 2.0; this program reads 1.x: convert the source again with this version of vox2pf\n"));
+    write("b.pf_vox", "neither this program's nor its predecessor's, and long enough for a header .............");
+    EXPECT_THAT(run("b.pf_vox --screenshot a.png").err, HasSubstr("vox2pf convert <source> -o 'b.pf_vox'"));
+}
+
 TEST_F(PfviewCli, SourceFileGetsTheCommandToRun) {
     write("hall.vox", "VOX \x96\0\0\0 and so on, long enough to have a header of some kind ..............");
     const Outcome r = run("hall.vox --screenshot a.png");

@@ -91,6 +91,7 @@ TEST_F(PfviewLight, ProbesThatCannotBeReadAreErrors) {
     write("older.pf_probe", older);
     const Outcome version = run(picture + "older.pf_probe");
     EXPECT_EQ(version.exitCode, 5) << version.err;
+    EXPECT_THAT(version.err, HasSubstr("bake again: probe-bake 'hall.toml' -o 'older.pf_probe'\n")) << "where it was asked for";
     EXPECT_FALSE(fs::exists(folder_ / "a.png"));
 }
 
@@ -102,6 +103,10 @@ TEST_F(PfviewLight, ViewsOfProbesNeedProbes) {
     const Outcome beyond = run("hall.toml --size 8x8 --screenshot a.png --view atlas-light --probe 24");
     EXPECT_EQ(beyond.exitCode, 4);
     EXPECT_THAT(beyond.err, HasSubstr("24 probes"));
+    EXPECT_FALSE(fs::exists(folder_ / "a.png"));
+    const Outcome page = run("hall.toml --size 160x120 --screenshot a.png --view atlas-light --probe-page 2");
+    EXPECT_EQ(page.exitCode, 4);
+    EXPECT_THAT(page.err, HasSubstr("24 probes are on 2 pages"));
     EXPECT_FALSE(fs::exists(folder_ / "a.png"));
     EXPECT_GT(statistics("--screenshot a.png --view field-difference")["field"]["hits"], 100);
 }

@@ -52,7 +52,7 @@ TEST_F(SessionFilesTest, Foreign) {
 TEST_F(SessionFilesTest, OfAnotherVersion) {
     std::string other = bytes;
     other[8] = 9;  // layout::Header::versionMajor
-    EXPECT_THAT(stripAfterOpening(other), AllOf(HasSubstr("9."), HasSubstr("convert its source again")));
+    EXPECT_THAT(stripAfterOpening(other), AllOf(HasSubstr("9."), HasSubstr("convert the source again with this version")));
     expectMendable();
 }
 

@@ -1,19 +1,10 @@
 // The interactive viewer without its window: what is loaded, what commands do, what happens when files change.
-#include "session.hpp"
-
 #include <gmock/gmock.h>
-
-#include <algorithm>
-#include <chrono>
-#include <pfvox/pf_vox.hpp>
-#include <thread>
 
 #include "png.hpp"
 #include "support/image_compare.hpp"
 #include "support/lit_hall.hpp"
-#include "support/picture_fixture.hpp"
-#include "support/procedural.hpp"
-#include "support/temp_folder.hpp"
+#include "support/session_fixture.hpp"
 
 namespace pfvox::test {
 namespace {
@@ -23,62 +14,9 @@ using ::testing::HasSubstr;
 
 namespace fs = std::filesystem;
 
-constexpr glm::uvec2 kSize{160, 120};
-
 fs::path hallProbes() { return fs::path(PFVOX_TESTS_DIR) / "image/golden/hall.pf_probe"; }
 
-VoxelAsset redBox() {
-    VoxelAsset asset;
-    asset.materials = {material(220, 20, 20)};
-    VoxelModel model;
-    fillBox(model, {.min = {0, 0, 0}, .max = {8, 8, 8}}, [](glm::ivec3) { return MaterialIndex{0}; });
-    asset.models.push_back(std::move(model));
-    asset.instances.push_back({.model = 0, .worldFromModel = Affine{0.1}, .name = "box"});
-    return asset;
-}
-
-class SessionTest : public PictureTest {
-  protected:
-    void TearDown() override {
-        session.reset();
-        PictureTest::TearDown();
-    }
-    void write(const std::string& name, const VoxelAsset& asset) {
-        const auto bytes = encodePfVox(build(asset), EncodeSettings{});
-        ASSERT_TRUE(bytes) << describe(bytes.error());
-        writeText(folder / name, {reinterpret_cast<const char*>(bytes->data()), bytes->size()});
-    }
-    void start(const SessionStart& what, Memory memory = {}) {
-        auto made = Session::create(device(), what, std::move(memory), log);
-        ASSERT_TRUE(made) << describe(made.error());
-        session = *std::move(made);
-        settle();
-    }
-    /// Lets a second pass, as far as the session can tell, and waits for what it loads.
-    void settle() {
-        for (int i = 0; i < 4; ++i) session->update(now += 0.26);
-        for (int i = 0; i < 2000 && session->isLoading(); ++i) {
-            std::this_thread::sleep_for(std::chrono::milliseconds(5));
-            session->update(now);
-        }
-        ASSERT_FALSE(session->isLoading());
-    }
-    void press(Key key, bool control = false) {
-        const KeyBinding* const binding = bindingOf(key, control);
-        ASSERT_NE(binding, nullptr);
-        session->execute(*binding);
-    }
-    Picture drawn() {
-        const Result<void> done = session->draw(kSize);
-        EXPECT_TRUE(done) << describe(done.error());
-        return session->frames().picture(device()).value();
-    }
-
-    TempFolder folder;
-    MessageLog log;
-    std::unique_ptr<Session> session;
-    double now = 0.0;
-};
+using SessionTest = SessionFixture;
 
 TEST_F(SessionTest, ShowsAFileAndRestsWhenThePictureIsSmooth) {
     write("room.pf_vox", demoRoom());
@@ -143,7 +81,7 @@ TEST_F(SessionTest, ScreenshotsAreNumberedAndShowThePicture) {
 }
 
 TEST_F(SessionTest, PickTellsVoxelMaterialModelAndInstance) {
-    write("box.pf_vox", redBox());
+    write("box.pf_vox", box(8));
     write("room.pf_vox", demoRoom());
     writeText(folder / "s.toml",
               "[[models]]\npath = 'room.pf_vox'\nname = 'far away'\ntranslateVec = [500, 0, 0]\n"
@@ -171,7 +109,7 @@ TEST_F(SessionTest, AChangedFileIsShownAndTheCameraStays) {
     session->camera.move({0, 0, 1}, 0.1, false);
     const ViewCamera camera = session->camera.camera();
     const std::uint64_t voxels = session->shown()->scene.statistics().voxels;
-    write("a.pf_vox", redBox());
+    write("a.pf_vox", box(8));
     settle();
     EXPECT_NE(session->shown()->scene.statistics().voxels, voxels);
     EXPECT_EQ(session->shown()->scene.statistics().voxels, 512u);
@@ -180,7 +118,7 @@ TEST_F(SessionTest, AChangedFileIsShownAndTheCameraStays) {
 }
 
 TEST_F(SessionTest, ABrokenFileKeepsTheSceneUntilItIsMended) {
-    write("a.pf_vox", redBox());
+    write("a.pf_vox", box(8));
     start({.path = folder / "a.pf_vox"});
     const Picture before = drawn();
     writeText(folder / "a.pf_vox", "nonsense, and not even long enough");
@@ -196,7 +134,7 @@ TEST_F(SessionTest, ABrokenFileKeepsTheSceneUntilItIsMended) {
 }
 
 TEST_F(SessionTest, AModelOfASceneIsWatchedToo) {
-    write("a.pf_vox", redBox());
+    write("a.pf_vox", box(8));
     writeText(folder / "s.toml", "[[models]]\npath = 'a.pf_vox'\n");
     start({.path = folder / "s.toml"});
     EXPECT_EQ(session->shown()->scene.statistics().voxels, 512u);
@@ -222,7 +160,7 @@ TEST_F(SessionTest, WhatCannotBeOpenedIsTold) {
 }
 
 TEST_F(SessionTest, AFolderIsGoneThrough) {
-    write("a.pf_vox", redBox());
+    write("a.pf_vox", box(8));
     write("b.pf_vox", demoRoom());
     start({.path = folder.path()});
     EXPECT_EQ(session->shown()->path.file.filename(), "a.pf_vox");
@@ -235,7 +173,7 @@ TEST_F(SessionTest, AFolderIsGoneThrough) {
 }
 
 TEST_F(SessionTest, CamerasAreRememberedForEachFile) {
-    write("a.pf_vox", redBox());
+    write("a.pf_vox", box(8));
     write("b.pf_vox", demoRoom());
     start({.path = folder / "a.pf_vox"});
     const ViewCamera there{.position = {4, 3, 2}, .target = {0, 0, 0}, .fovYDegrees = 55};

@@ -36,8 +36,9 @@ class SessionFixture : public PictureTest {
         ASSERT_TRUE(bytes) << describe(bytes.error());
         ASSERT_TRUE(io::writeFileAtomically(folder / name, *bytes));
     }
-    void start(const std::filesystem::path& path = {}) {
-        auto made = viewer::Session::create(device(), {.path = path}, {}, log);
+    void start(const std::filesystem::path& path = {}) { start(viewer::SessionStart{.path = path}); }
+    void start(const viewer::SessionStart& what, viewer::Memory memory = {}) {
+        auto made = viewer::Session::create(device(), what, std::move(memory), log);
         ASSERT_TRUE(made) << describe(made.error());
         session = *std::move(made);
         session->windowSize = glm::dvec2(kSize);
@@ -59,6 +60,11 @@ class SessionFixture : public PictureTest {
         ASSERT_NE(binding, nullptr);
         session->execute(*binding);
         session->update(now);
+    }
+    viewer::Picture drawn() {
+        const Result<void> done = session->draw(kSize);
+        EXPECT_TRUE(done) << describe(done.error());
+        return session->frames().picture(device()).value();
     }
     std::uint64_t voxels() const { return session->shown()->scene.statistics().voxels; }
     std::uint32_t instances() const { return session->shown()->scene.statistics().instances; }

@@ -129,6 +129,50 @@ TEST_F(ComposeWindowTest, AKeyIsNotLostInASlowFrame) {
     close();
 }
 
+TEST_F(ComposeWindowTest, TheFileDialogKeepsTheKeyboard) {
+    ASSERT_TRUE(startAndSee("scene.toml"));
+    click(kSkyX, kSkyY);
+    ASSERT_TRUE(keyOpens("Insert"));
+    VirtualScreen::pause(0.5);
+    const auto type = [&](const std::string& name) {
+        key("ctrl+a");  // what was wrong stays, to be mended
+        screen->send({"type", "--delay", "30", name});
+        key("Return");
+        VirtualScreen::pause(0.5);
+    };
+    key("Return");
+    VirtualScreen::pause(0.5);
+    type("none.pf_vox");
+    EXPECT_TRUE(isDimmed()) << "it says that there is no such file";
+    type("..");
+    type(folder.path().filename().string());
+    type("box.pf_vox");
+    ASSERT_TRUE(eventually([&] { return !isDimmed(); }));
+    EXPECT_TRUE(savedAs([](const Scene& scene) { return scene.models.size() == 2; }));
+    close();
+}
+
+TEST_F(ComposeWindowTest, AMessageIsInFrontOfTheWindows) {
+    ASSERT_TRUE(startAndSee("scene.toml"));
+    const auto red = [&] {  // the strip at the lower edge, where the log is below it
+        const std::uint32_t pixel = screen->picture().pixels.at((kHeight - 12) * kWidth + kWidth / 2);
+        return (pixel & 0xffu) > (pixel >> 8 & 0xffu) + 50u;
+    };
+    click(kSkyX, kSkyY);
+    writeText(folder / "scene.toml", "broken = [");
+    ASSERT_TRUE(eventually(red));
+    key("Escape");
+    ASSERT_TRUE(eventually([&] { return !red(); }));
+    click(500, 640);  // the log comes to the front
+    writeText(folder / "scene.toml", "broken once more = [");
+    EXPECT_TRUE(eventually(red));
+    click(500, 615);
+    EXPECT_TRUE(red()) << "whatever is clicked";
+    writeText(folder / "scene.toml", kSceneText);
+    EXPECT_TRUE(eventually([&] { return !red(); })) << "mended";
+    close();
+}
+
 TEST_F(ComposeWindowTest, TheMouseSelectsAndDragsAModel) {
     writeText(folder / "scene.toml", std::string(kSceneText) + "[[models]]\npath = 'box.pf_vox'\ntranslateVec = [3.2, 0, 3]\n");
     ASSERT_TRUE(startAndSee("scene.toml"));

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "common/text.hpp"
+#include "common/unknown_option.hpp"
 
 namespace pfvox::tools {
 
@@ -18,29 +19,9 @@ void print(std::FILE* stream, const std::string& text) {
     std::fwrite(text.data(), 1, text.size(), stream);
 }
 
-std::vector<std::string> optionNames(const CLI::App& command) {
-    std::vector<std::string> names;
-    for (const CLI::Option* option : command.get_options()) {
-        for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
-    }
-    return names;
-}
-
 const CLI::App& chosenCommand(const CLI::App& tool) {
     const auto chosen = tool.get_subcommands();
     return chosen.empty() ? tool : *chosen.front();
-}
-
-/// "unknown option --forse; did you mean --force?", or nothing when every option was known.
-std::optional<std::string> complaintAboutUnknownOption(const CLI::App& tool) {
-    const CLI::App& command = chosenCommand(tool);
-    for (const std::string& word : tool.remaining(true)) {
-        if (!word.starts_with('-')) continue;
-        const std::string name = word.substr(0, word.find('='));
-        const auto nearest = nearestWord(name, optionNames(command));
-        return fmt::format("unknown option {}{}", name, nearest ? "; did you mean " + *nearest + "?" : "");
-    }
-    return std::nullopt;
 }
 
 /// A first word that is nearly a command and names no file, or nothing.
@@ -87,7 +68,7 @@ std::optional<ExitCode> parseCommandLine(CLI::App& tool, const std::vector<std::
         print(stdout, std::string(version.what()) + "\n");
         return ExitCode::Ok;
     } catch (const CLI::ParseError& error) {
-        auto complaint = complaintAboutUnknownOption(tool);
+        auto complaint = complaintAboutUnknownOption(tool, chosenCommand(tool));
         if (!complaint) complaint = complaintAboutCommand(tool, arguments);
         return usageError(chosenCommand(tool), complaint.value_or(error.what()));
     }

@@ -9,7 +9,9 @@
 #include <pfvox/files.hpp>
 #include <pfvox/scene.hpp>
 
+#include "atlas_layout.hpp"
 #include "camera_path.hpp"
+#include "common/text.hpp"
 #include "frame_sequence.hpp"
 #include "open_path.hpp"
 #include "png.hpp"
@@ -146,11 +148,18 @@ Result<void> draw(const Stage& stage, RunReport& run) {
     return stage.options.frames > 1 ? drawAccumulated(stage, run) : drawOne(stage, run);
 }
 
-/// --probe names a probe that is there.
+/// --probe and --probe-page name what is there.
 Result<void> checkAtlas(const PictureSettings& settings, const ShownProbes* probes) {
-    if (probes == nullptr || settings.atlas.probe < static_cast<std::int64_t>(probes->probes.size())) return {};
-    return fail(ErrorCode::BadReference, fmt::format("--probe {}: the field has {} probes, from 0 on",
-                                                     settings.atlas.probe, probes->probes.size()));
+    if (probes == nullptr) return {};
+    const auto count = static_cast<std::uint32_t>(probes->probes.size());
+    if (settings.atlas.probe >= static_cast<std::int64_t>(count)) {
+        return fail(ErrorCode::BadReference,
+                    fmt::format("--probe {}: the field has {} probes, from 0 on", settings.atlas.probe, count));
+    }
+    const std::uint32_t pages = atlasLayout(settings, count).pages;
+    if (!isAtlas(settings.mode) || settings.atlas.page < pages) return {};
+    return fail(ErrorCode::BadReference, fmt::format("--probe-page {}: the {} probes are on {} at this size, from 0 on",
+                                                     settings.atlas.page, count, tools::plural(pages, "page")));
 }
 
 }  // namespace

@@ -3,11 +3,15 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <vector>
 
 #include "common/help_page.hpp"
+#include "common/text.hpp"
+#include "common/unknown_option.hpp"
 
 namespace pfvox::viewer {
 
@@ -102,6 +106,22 @@ std::string namesOf(const Entries& entries) {
     for (std::size_t i = 0; i < entries.size(); ++i)
         names += (i == 0 ? "" : i + 1 == entries.size() ? " or " : ", ") + std::string(entries[i].name);
     return names;
+}
+
+/// "there is no view 'finale'; did you mean final? There is ...".
+template <class Entries>
+std::string noSuch(std::string_view kind, const std::string& word, const Entries& entries) {
+    const auto nearest = tools::nearestWord(word, wordsOf(entries));
+    return fmt::format("there is no {} '{}'; {}there is {}", kind, word, nearest ? "did you mean " + *nearest + "? " : "",
+                       namesOf(entries));
+}
+
+/// A picture in another format under this name would not be what it says.
+void checkPngName(const std::string& option, const std::filesystem::path& file) {
+    std::string extension = file.extension().string();
+    std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return std::tolower(c); });
+    if (extension != ".png")
+        throw CLI::ValidationError(option, fmt::format("'{}' does not end in .png, and PNG is all that is written", file.string()));
 }
 
 void declareLight(CLI::App& app, Options& options, RawOptions& raw) {
@@ -201,17 +221,18 @@ void understand(const RawOptions& raw, Options& options) {
     }
     if (!raw.view.empty()) {
         const std::optional<ViewMode> mode = viewModeFrom(raw.view);
-        if (!mode) throw CLI::ValidationError("--view", fmt::format("there is no view '{}'", raw.view));
+        if (!mode) throw CLI::ValidationError("--view", noSuch("view", raw.view, viewModes()));
         options.picture.mode = *mode;
     }
     if (raw.exposure->count() != 0) options.exposureStops = raw.exposureStops;
     if (!raw.toneMap.empty()) {
         options.toneMap = toneMapFrom(raw.toneMap);
-        if (!options.toneMap) throw CLI::ValidationError("--tonemap", fmt::format("there is no tone map '{}'", raw.toneMap));
+        if (!options.toneMap) throw CLI::ValidationError("--tonemap", noSuch("tone map", raw.toneMap, toneMaps()));
     }
     options.picture.toneMap = options.toneMap.value_or(ToneMap::Standard);
     if (options.screenshot.empty() && raw.samples->count() == 0) options.picture.samplesPerPixel = 1;
     if (options.listDevices) return;
+    if (!options.screenshot.empty()) checkPngName("--screenshot", options.screenshot);
     if (options.screenshot.empty()) {
         if (!options.cameraPath.empty()) throw CLI::ValidationError("--camera-path", "needs --screenshot");
         if (options.frames != 1 && !options.isHeadless())
@@ -237,8 +258,8 @@ std::variant<Options, EarlyExit> parseOptions(int argc, const char* const* argv)
     } catch (const CLI::CallForVersion& version) {
         return EarlyExit{.exitCode = 0, .text = std::string(version.what()) + "\n"};
     } catch (const CLI::ParseError& error) {
-        return EarlyExit{.exitCode = kUsageError,
-                         .text = fmt::format("pfview: {}\nTry 'pfview --help'.\n", error.what())};
+        const std::string complaint = tools::complaintAboutUnknownOption(app, app).value_or(error.what());
+        return EarlyExit{.exitCode = kUsageError, .text = fmt::format("pfview: {}\nTry 'pfview --help'.\n", complaint)};
     }
     return options;
 }

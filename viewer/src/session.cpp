@@ -79,10 +79,17 @@ void Session::load(OpenPath path, bool keepCamera) {
     watchFiles(scene ? *scene : Scene{});
     const fs::path file = path.file;
     MessageLog* const log = log_;
+    forgetLoading();
     loading_ = Loading{.path = std::move(path),
                        .keepCamera = keepCamera,
                        .scene = std::async(std::launch::async,
-                                           [file, log] { return loadScene(file, Limits{}, *log); })};
+                                           [file, log, read = start_.read] { return read(file, Limits{}, *log); })};
+}
+
+/// Without waiting for it, as the end of a future of std::async would.
+void Session::forgetLoading() {
+    if (loading_) outdated_.push_back(std::move(loading_->scene));
+    loading_.reset();
 }
 
 void Session::watchFiles(const Scene& scene) {
@@ -91,39 +98,9 @@ void Session::watchFiles(const Scene& scene) {
         files.clear();
         for (const SceneModel& model : scene.models) files.push_back(composer.editor.fileOf(model));
     }
-    if (!probeRequest_.none)
-        files.push_back(probeRequest_.file.empty() ? probesBeside(wanted_.file) : probeRequest_.file);
+    const fs::path probes = probeRequest_.file.empty() ? probesBeside(wanted_.file) : probeRequest_.file;
+    if (!probeRequest_.none && !probes.empty()) files.push_back(probes);
     watch_.watch(files);
-}
-
-void Session::findProbesOf(const ShownScene& shown) {
-    Result<std::optional<ShownProbes>> found =
-        findProbes(*device_, probeRequest_, shown.loaded, shown.path.file, *log_);
-    if (!found) return log_->addError(describe(found.error()));
-    probes_ = *std::move(found);
-    if (probes_) {
-        log_->add(MessageKind::Note, "probes from " + probes_->file.string());
-    } else if (probeRequest_.none) {
-        log_->add(MessageKind::Note, "no probes, as asked");
-    } else {
-        log_->add(MessageKind::Note, "no probes: there is no " + probesBeside(shown.path.file).string());
-    }
-    frames_.restart();
-    drawn_.reset();
-}
-
-void Session::loadProbes(const fs::path& file) {
-    probeRequest_ = {.file = file};
-    if (!shown_) return;
-    findProbesOf(*shown_);
-    watchFiles(shown_->loaded.scene);
-}
-
-void Session::dropProbes() {
-    probeRequest_ = {.none = true};
-    probes_.reset();
-    frames_.restart();
-    drawn_.reset();
 }
 
 Result<void> Session::placeCamera(const fs::path& file, const Scene& scene) {
@@ -158,7 +135,9 @@ Result<void> Session::show(OpenPath path, LoadedScene loaded, bool keepCamera) {
 }
 
 void Session::update(double secondsSinceStart) {
-    if (loading_ && loading_->scene.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
+    const auto isDone = [](const auto& scene) { return scene.wait_for(std::chrono::seconds(0)) == std::future_status::ready; };
+    std::erase_if(outdated_, isDone);
+    if (loading_ && isDone(loading_->scene)) {
         Loading done = *std::exchange(loading_, std::nullopt);
         Result<LoadedScene> loaded = done.scene.get();
         const std::string name = done.path.file.string();
@@ -189,7 +168,7 @@ void Session::frameAll() {
 
 void Session::nextCamera() {
     if (!shown_ || shown_->loaded.scene.cameras.empty()) {
-        log_->add(MessageKind::Note, "the scene has no cameras");
+        log_->add(MessageKind::Note, shown_ ? "the scene has no cameras" : "nothing is open");
         return;
     }
     const std::vector<Camera>& cameras = shown_->loaded.scene.cameras;

@@ -10,6 +10,7 @@
 #include <optional>
 #include <pfvox/ray_query.hpp>
 
+#include "atlas_layout.hpp"
 #include "camera_choice.hpp"
 #include "camera_controller.hpp"
 #include "commands.hpp"
@@ -42,6 +43,8 @@ struct SessionStart {
     ProbeRequest probes = {};  ///< of what is opened first; later files have those beside them
     AtlasChoice atlas = {};
     std::filesystem::path screenshotFolder = {};  ///< empty = where the program runs
+    /// What reads files and scenes, on a thread of its own.
+    std::function<Result<LoadedScene>(const std::filesystem::path&, const Limits&, Diagnostics&)> read = loadScene;
 };
 
 class Session {
@@ -112,6 +115,9 @@ class Session {
     /// Settings and cameras as they are to be remembered.
     Memory memory() const;
 
+    /// Where the maps lie when the picture is a page of them, in pixels of frames(); then no scene is under the cursor.
+    std::optional<AtlasLayout> shownAtlas() const;
+
     // What windows change.
     CameraController camera;
     Settings settings;
@@ -124,6 +130,7 @@ class Session {
     glm::dvec2 windowSize{1280.0, 720.0};        ///< in the unit of cursor positions
 
   private:
+    void forgetLoading();
     struct Loading {
         OpenPath path;
         bool keepCamera = false;
@@ -164,6 +171,7 @@ class Session {
     std::optional<ShownProbes> probes_;
     ProbeRequest probeRequest_;
     std::optional<Loading> loading_;
+    std::vector<std::future<Result<LoadedScene>>> outdated_;  ///< what nobody waits for any more
     FileWatch watch_;
     double nextPoll_ = 0.0;
     std::optional<std::pair<ViewCamera, PictureSettings>> drawn_;

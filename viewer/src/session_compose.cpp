@@ -13,8 +13,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr double kResizeFactor = 1.1;
-constexpr double kProbeReach = 8.0;  // of a click, in the window's unit
-constexpr std::size_t kMostClickableProbes = 1 << 17;
 
 bool isModelFile(const fs::path& file) {
     return file.extension() == ".pf_vox";
@@ -55,8 +53,9 @@ void Session::newScene() {
         rememberCamera();
         std::error_code ignored;
         composer.beginEmpty(fs::current_path(ignored));
-        loading_.reset();
+        forgetLoading();
         wanted_ = {};
+        probeRequest_ = {};
         probes_.reset();
         selectedProbe.reset();
         pick_.reset();
@@ -72,7 +71,14 @@ void Session::quit() {
 }
 
 void Session::openNeighbour(int step) {
-    composer.leave([this, step] { load({.file = neighbourOf(wanted_, step), .siblings = wanted_.siblings}, false); });
+    if (wanted_.siblings.size() < 2) {
+        log_->add(MessageKind::Note, "there is no other file: open a folder to go through its files");
+        return;
+    }
+    composer.leave([this, step] {
+        probeRequest_ = {};  // those of the file that is left are not the next one's
+        load({.file = neighbourOf(wanted_, step), .siblings = wanted_.siblings}, false);
+    });
 }
 
 void Session::addModels(const std::vector<fs::path>& files) {
@@ -119,6 +125,9 @@ void Session::followSavedFile() {
     if (shown_->path.file != file) {
         shown_->path = {.file = file, .siblings = {file}};
         wanted_ = shown_->path;
+        std::error_code ignored;
+        const bool takesThoseBeside = !probeRequest_.none && probeRequest_.file.empty();
+        if (takesThoseBeside && fs::exists(probesBeside(file), ignored)) findProbesOf(*shown_);
     }
     watchFiles(composer.editor.scene());
     if (probes_) probes_->ofThisScene = probes_->info.sceneHash == sceneContentHash(shown_->loaded);
@@ -145,36 +154,12 @@ Result<void> Session::rearrange(LoadedScene loaded) {
 
 // ---- Selecting and dragging ------------------------------------------------------------------------------
 
-bool Session::selectProbeAt(glm::dvec2 parts) {
-    if (!shown_ || !settings.showProbeGrid) return false;
-    const ProbeGrid& grid = shown_->loaded.probes;
-    if (grid.probeCount() > kMostClickableProbes) return false;
-    const Projection view = projection();
-    double nearest = kProbeReach;
-    std::optional<std::uint32_t> best;
-    for (std::uint32_t i = 0; i < grid.probeCount(); ++i) {
-        const auto at = view.pointOf(placeOfProbe(i));
-        const double distance = at ? glm::length(*at - parts * windowSize) : nearest;
-        if (distance < nearest) {
-            nearest = distance;
-            best = i;
-        }
-    }
-    if (best) selectedProbe = best;
-    return best.has_value();
-}
-
-glm::dvec3 Session::placeOfProbe(std::uint32_t index) const {
-    const bool sameGrid = probes_ && probes_->info.grid == shown_->loaded.probes && index < probes_->probes.size();
-    return sameGrid ? glm::dvec3(probes_->probes[index].position) : glm::dvec3(shown_->loaded.probes.pointOf(index));
-}
-
 void Session::clickAt(glm::dvec2 parts) {
     if (!selectProbeAt(parts)) pickAt(parts);
 }
 
 std::optional<Gizmo> Session::gizmo() const {
-    if (!shown_ || !settings.showWindows || !composer.editor.selected()) return std::nullopt;
+    if (!shown_ || !settings.showWindows || !composer.editor.selected() || shownAtlas()) return std::nullopt;
     const WorldBounds box = boundsOfModel(shown_->loaded, *composer.editor.selected());
     if (box.empty()) return std::nullopt;
     const Gizmo gizmo(projection(), footOf(box));

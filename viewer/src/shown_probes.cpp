@@ -25,10 +25,13 @@ bool isThere(const fs::path& file) {
 /// Says what to do about a file that is no probe file that this program reads.
 Error withRemedy(Error error, const fs::path& file, const fs::path& scene) {
     if (error.file.empty()) error.file = file;
-    if (error.code != ErrorCode::FileNotReadable && error.code != ErrorCode::GpuOutOfMemory &&
-        error.code != ErrorCode::GpuLost) {
-        error.message += "; bake it: " + bakeCommand(scene, probesBeside(scene));
-    }
+    if (error.code == ErrorCode::FileNotReadable || error.code == ErrorCode::GpuOutOfMemory ||
+        error.code == ErrorCode::GpuLost || scene.empty())
+        return error;
+    // What is something else altogether is not to be written over.
+    const fs::path output = file.extension() == ".pf_probe" ? file : probesBeside(scene);
+    const char* const joint = error.code == ErrorCode::UnsupportedVersion ? ": " : "; bake it: ";
+    error.message += joint + bakeCommand(scene, output);
     return error;
 }
 
@@ -42,6 +45,7 @@ std::vector<ShownProbe> listOf(const ProbeFileReader& reader) {
 }  // namespace
 
 fs::path probesBeside(const fs::path& scene) {
+    if (scene.empty()) return {};
     return fs::path(scene).replace_extension(".pf_probe");
 }
 
@@ -95,7 +99,7 @@ Result<std::optional<ShownProbes>> findProbes(gpu::Device& device, const ProbeRe
                                               Diagnostics& diagnostics) {
     if (request.none) return std::optional<ShownProbes>{};
     const fs::path file = request.file.empty() ? probesBeside(sceneFile) : request.file;
-    if (request.file.empty() && !isThere(file)) return std::optional<ShownProbes>{};
+    if (request.file.empty() && (file.empty() || !isThere(file))) return std::optional<ShownProbes>{};
     PFVOX_TRY(ShownProbes, shown, openProbes(device, file, scene, sceneFile, diagnostics));
     return std::optional<ShownProbes>(std::move(shown));
 }
@@ -103,6 +107,10 @@ Result<std::optional<ShownProbes>> findProbes(gpu::Device& device, const ProbeRe
 Result<void> checkView(ViewMode mode, const ShownProbes* probes, const fs::path& sceneFile) {
     const ViewEntry& entry = entryOf(mode);
     if (entry.needs == ViewNeeds::Nothing) return {};
+    if (probes == nullptr && sceneFile.empty()) {
+        return fail(ErrorCode::FileNotFound, fmt::format("the view '{}' shows probes, and there are none; save the scene, "
+                                                         "then probe-bake makes them", entry.name));
+    }
     if (probes == nullptr) {
         const fs::path file = probesBeside(sceneFile);
         return tl::make_unexpected(

@@ -29,7 +29,8 @@ struct ShownProbes {
     gpu::GpuProbes field;
 };
 
-/// "court.toml" -> "court.pf_probe", whether or not it is there; likewise for a .pf_vox file.
+/// "court.toml" -> "court.pf_probe", whether or not it is there; likewise for a .pf_vox file. Of a scene without a file:
+/// empty.
 std::filesystem::path probesBeside(const std::filesystem::path& scene);
 
 /// The scene or .pf_vox file that a probe file lights: the one beside it with the same stem. Errors: FileNotFound.

@@ -59,6 +59,10 @@ std::string_view toString(ViewMode mode) {
     return entryOf(mode).name;
 }
 
+bool isAtlas(ViewMode mode) {
+    return mode == ViewMode::AtlasLight || mode == ViewMode::AtlasNormals || mode == ViewMode::AtlasDepth;
+}
+
 std::span<const ToneMapEntry> toneMaps() {
     return kToneMaps;
 }

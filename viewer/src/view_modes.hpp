@@ -45,6 +45,8 @@ inline constexpr std::size_t kViewModes = 14;
 const ViewEntry& entryOf(ViewMode mode);
 std::optional<ViewMode> viewModeFrom(std::string_view name);
 std::string_view toString(ViewMode mode);
+/// Pages of maps instead of a picture of the scene.
+bool isAtlas(ViewMode mode);
 
 /// How radiance becomes a colour of the screen.
 enum class ToneMap : std::uint8_t {

@@ -3,41 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "atlas_layout.hpp"
 #include "view_passes.hpp"
 
 namespace pfvox::viewer {
 
 namespace {
-
-/// How the maps lie in the picture.
-struct AtlasLayout {
-    std::uint32_t first = 0;
-    std::uint32_t count = 0;
-    std::uint32_t columns = 1;
-    std::uint32_t cell = 1;
-};
-
-/// The largest cell with which all probes fit, but none under kSmallestCell: then there are pages.
-AtlasLayout atlasLayout(const PictureSettings& settings, std::uint32_t probes) {
-    constexpr std::uint32_t kSmallestCell = 32;
-    const std::uint32_t width = settings.width;
-    const std::uint32_t height = settings.height;
-    const std::uint32_t shortEdge = std::min(width, height);
-    if (settings.atlas.probe >= 0 || probes == 0) {
-        const auto probe = static_cast<std::uint32_t>(std::max(settings.atlas.probe, 0));
-        return {.first = std::min(probe, std::max(probes, 1u) - 1), .count = probes == 0 ? 0u : 1u, .columns = 1, .cell = shortEdge};
-    }
-    const auto fits = [&](std::uint32_t cell) { return std::uint64_t{width / cell} * (height / cell) >= probes; };
-    const std::uint32_t least = std::min(kSmallestCell, shortEdge);
-    std::uint32_t cell = shortEdge;
-    while (cell > least && !fits(cell)) --cell;
-    const std::uint32_t perPage = std::max((width / cell) * (height / cell), 1u);
-    const std::uint32_t page = std::min(settings.atlas.page, (probes - 1) / perPage);
-    return {.first = page * perPage,
-            .count = std::min(perPage, probes - page * perPage),
-            .columns = std::max(width / cell, 1u),
-            .cell = cell};
-}
 
 std::uint64_t joined(glm::uvec2 words) {
     return std::uint64_t{words.y} << 32 | words.x;

@@ -29,8 +29,7 @@ bool hasSun(const PictureSettings& settings) {
 std::vector<Pass> passesOf(const PictureInput& input, const PictureSettings& settings) {
     const ViewMode mode = drawnMode(input, settings);
     if (mode == ViewMode::Field || mode == ViewMode::FieldDifference) return {Pass::Field};
-    if (mode == ViewMode::AtlasLight || mode == ViewMode::AtlasNormals || mode == ViewMode::AtlasDepth)
-        return {Pass::Atlas};
+    if (isAtlas(mode)) return {Pass::Atlas};
     if (!isLit(mode)) return {Pass::Scene};
     std::vector<Pass> passes{Pass::Geometry};
     if (mode == ViewMode::Final && hasSun(settings)) passes.push_back(Pass::Sun);

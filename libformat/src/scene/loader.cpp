@@ -40,10 +40,18 @@ std::string shellWord(const fs::path& path) {
 
 /// The command that makes a PF_VOX file of `file`.
 std::string remedyFor(const fs::path& file) {
-    // The program's predecessor used the same extension: then the output needs a folder of its own.
-    const bool sameName = file.extension() == ".pf_vox";
-    const fs::path output = sameName ? fs::path("converted/") : fs::path(file).replace_extension(".pf_vox");
-    return fmt::format("vox2pf convert {} -o {}", shellWord(file), shellWord(output));
+    if (file.extension() != ".pf_vox") {
+        return fmt::format("convert the source first: vox2pf convert {} -o {}", shellWord(file),
+                           shellWord(fs::path(file).replace_extension(".pf_vox")));
+    }
+    return fmt::format("convert its source anew: vox2pf convert <source> -o {0}; a .pf_vox file of the program's "
+                       "predecessor is a source, too: vox2pf convert {0} -o 'converted/'",
+                       shellWord(file));
+}
+
+/// Bytes were lost or changed on their way.
+bool isDamage(ErrorCode code) {
+    return code == ErrorCode::Truncated || code == ErrorCode::ChecksumMismatch || code == ErrorCode::BadStructure;
 }
 
 Result<std::shared_ptr<const OctreeAsset>> loadAsset(const fs::path& file, const Limits& limits,
@@ -54,11 +62,13 @@ Result<std::shared_ptr<const OctreeAsset>> loadAsset(const fs::path& file, const
     Error error = std::move(asset).error();
     if (error.file.empty()) error.file = file;
     if (error.code == ErrorCode::BadMagic) {
-        error.message = "not a PF_VOX file; convert the source first: " + remedyFor(file);
+        error.message = "not a PF_VOX file; " + remedyFor(file);
         error.context.clear();
         error.offsetBytes.reset();
     } else if (error.code == ErrorCode::UnsupportedVersion) {
-        error.message += "; convert its source again with this version of vox2pf";
+        error.message += " with this version of vox2pf";
+    } else if (isDamage(error.code)) {
+        error.message += "; copy the file anew, or convert its source again";
     }
     return tl::make_unexpected(std::move(error));
 }

@@ -47,6 +47,26 @@ TEST_F(SceneEditorTest, BeginsUnchangedWithNothingToUndo) {
     EXPECT_FALSE(editor.selected());
 }
 
+// What a slow frame makes of "5.25" and Return: the field is left in the frame in which it changed.
+TEST_F(SceneEditorTest, TheEditThatEndsAStepBelongsToIt) {
+    ASSERT_TRUE(editor.setModel(0, moved(0, 5.0), "place"));
+    editor.endGestureAfterNextEdit();
+    ASSERT_TRUE(editor.setModel(0, moved(0, 5.25), "place"));
+    ASSERT_TRUE(editor.setModel(0, moved(0, 6.0), "place"));
+    ASSERT_TRUE(editor.undo());
+    EXPECT_EQ(editor.scene().models[0].translateMetres.x, 5.25) << "the next one is another step";
+    ASSERT_TRUE(editor.undo());
+    EXPECT_EQ(editor.scene().models[0].translateMetres.x, 0.0);
+    EXPECT_FALSE(editor.canUndo());
+    // An edit that changes nothing or is refused ends the step as well.
+    ASSERT_TRUE(editor.setModel(0, moved(0, 1.0), "place"));
+    editor.endGestureAfterNextEdit();
+    ASSERT_TRUE(editor.setModel(0, moved(0, 1.0), "place"));
+    ASSERT_TRUE(editor.setModel(0, moved(0, 2.0), "place"));
+    ASSERT_TRUE(editor.undo());
+    EXPECT_EQ(editor.scene().models[0].translateMetres.x, 1.0);
+}
+
 TEST_F(SceneEditorTest, AddDuplicateAndRemoveSelectWhatTheyTouch) {
     ASSERT_TRUE(editor.addModel(model("c.pf_vox")));
     EXPECT_EQ(editor.selected(), 2u);

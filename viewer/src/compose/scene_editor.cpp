@@ -52,6 +52,7 @@ void SceneEditor::reset(Scene scene, fs::path file, fs::path folder) {
     undo_.clear();
     redo_.clear();
     gesture_.clear();
+    endsWithNext_ = false;
     selected_.reset();
     touched();
 }
@@ -88,6 +89,13 @@ bool SceneEditor::joinsLast(const SceneChange& change, std::string_view gesture)
 }
 
 Result<void> SceneEditor::edit(std::string what, SceneChange change, std::string_view gesture) {
+    const bool ends = std::exchange(endsWithNext_, false);
+    Result<void> done = makeStep(std::move(what), std::move(change), gesture);
+    if (ends) endGesture();
+    return done;
+}
+
+Result<void> SceneEditor::makeStep(std::string what, SceneChange change, std::string_view gesture) {
     if (changesNothing(change)) return {};
     PFVOX_CHECK(checkChange(change));
     redo_.clear();

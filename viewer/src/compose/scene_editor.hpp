@@ -52,6 +52,8 @@ class SceneEditor {
     Result<void> setCameras(std::vector<Camera> cameras, std::string_view gesture = {});
     /// What follows is another step to undo.
     void endGesture() { gesture_.clear(); }
+    /// The same, once the next edit has joined the step.
+    void endGestureAfterNextEdit() { endsWithNext_ = true; }
 
     bool canUndo() const { return !undo_.empty(); }
     bool canRedo() const { return !redo_.empty(); }
@@ -79,6 +81,7 @@ class SceneEditor {
         SceneChange change;
     };
     Result<void> edit(std::string what, SceneChange change, std::string_view gesture = {});
+    Result<void> makeStep(std::string what, SceneChange change, std::string_view gesture);
     bool joinsLast(const SceneChange& change, std::string_view gesture);
     void changeTo(const SceneChange& change);
     void touched();
@@ -89,6 +92,7 @@ class SceneEditor {
     std::filesystem::path folder_;
     std::vector<Step> undo_;
     std::vector<Step> redo_;
+    bool endsWithNext_ = false;
     std::string gesture_;  ///< that the last step of undo_ is of and may go on
     std::optional<std::size_t> selected_;
     std::uint64_t revision_ = 0;

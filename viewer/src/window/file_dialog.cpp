@@ -16,6 +16,7 @@ void FileDialog::begin(const fs::path& folder, const std::string& name) {
     path_ = name;
     error_.clear();
     begun_ = true;
+    wantsKeys_ = true;
     listed_ = false;
 }
 
@@ -60,13 +61,17 @@ bool FileDialog::drawList(const Request& request) {
         for (const std::string& name : files_.files) {
             if (ImGui::Selectable(name.c_str(), name == path_, ImGuiSelectableFlags_AllowDoubleClick)) {
                 path_ = name;
+                wantsKeys_ = true;
                 taken = ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left) && accept(request);
             }
         }
         if (files_.files.empty()) note("no such files in this folder");
     }
     ImGui::EndChild();
-    if (entered) list(folder_ / *entered, request);
+    if (!entered) return taken;
+    if (!request.forWriting) path_.clear();  // a name to save under is kept
+    wantsKeys_ = true;
+    list(folder_ / *entered, request);
     return taken;
 }
 
@@ -82,10 +87,13 @@ FileDialog::State FileDialog::draw(const Request& request) {
         return State::Cancelled;
     }
     note(folder_.string());
-    if (std::exchange(begun_, false)) ImGui::SetKeyboardFocusHere();
+    begun_ = false;
+    if (std::exchange(wantsKeys_, false)) ImGui::SetKeyboardFocusHere();
     ImGui::SetNextItemWidth(-1.0f);
-    if (ImGui::InputText("##path", &path_, ImGuiInputTextFlags_EnterReturnsTrue) && accept(request))
-        state = State::Chosen;
+    if (ImGui::InputText("##path", &path_, ImGuiInputTextFlags_EnterReturnsTrue)) {
+        if (accept(request)) state = State::Chosen;
+        wantsKeys_ = state == State::Open;  // Return takes them from the field
+    }
     if (drawList(request)) state = State::Chosen;
     std::error_code ignored;
     const bool replaces = request.forWriting && !path_.empty() && fs::is_regular_file(folder_ / fs::path(path_), ignored);

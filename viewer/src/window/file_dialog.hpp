@@ -36,6 +36,7 @@ class FileDialog {
     std::string error_;
     std::filesystem::path chosen_;
     bool begun_ = false;
+    bool wantsKeys_ = false;  ///< the path field is to have the keyboard from the next frame on
     bool listed_ = false;
 };
 

@@ -19,9 +19,9 @@ void drawSun(Session& session) {
     double height = glm::degrees(std::asin(std::clamp(towards.y, -1.0, 1.0)));
     double azimuth = glm::degrees(std::atan2(towards.x, towards.z));
     const bool turned = slider("sun azimuth", azimuth, -180.0, 180.0, "%.0f deg");
-    if (ImGui::IsItemDeactivated()) editor.endGesture();
+    endStep(turned, editor);
     const bool raised = slider("sun height", height, -89.0, 89.0, "%.0f deg");
-    if (ImGui::IsItemDeactivated()) editor.endGesture();
+    endStep(raised, editor);
     if (turned || raised) {
         const double a = glm::radians(azimuth);
         const double h = glm::radians(height);

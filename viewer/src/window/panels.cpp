@@ -1,6 +1,7 @@
 #include "window/panels.hpp"
 
 #include <fmt/format.h>
+#include <imgui_internal.h>  // which window is in front
 
 #include <algorithm>
 #include <vector>
@@ -41,7 +42,7 @@ void drawPasses(const PassTimes& times) {
         ImGui::TableNextColumn();
         text(std::string(toString(static_cast<Pass>(i))));
         ImGui::TableNextColumn();
-        text(fmt::format("{:.2f} ms", times[i]));
+        text(millisecondsText(times[i]));
         ImGui::TableNextColumn();
         ImGui::ProgressBar(static_cast<float>(times[i] / sum), {-1.0f, ImGui::GetTextLineHeight()}, "");
     }
@@ -51,10 +52,10 @@ void drawPasses(const PassTimes& times) {
 void drawHelp(Session& session) {
     const ImVec2 window = ImGui::GetIO().DisplaySize;
     ImGui::SetNextWindowPos({0.5f * window.x, 0.5f * window.y}, ImGuiCond_Appearing, {0.5f, 0.5f});
-    ImGui::SetNextWindowSize({std::min(760.0f, window.x), std::min(560.0f, window.y)}, ImGuiCond_Appearing);
+    ImGui::SetNextWindowSize({std::min(780.0f, window.x), std::min(680.0f, window.y)}, ImGuiCond_Appearing);
     if (ImGui::Begin("Keys", &session.showHelp, ImGuiWindowFlags_NoSavedSettings)) {
         const auto row = [](std::string_view keys, std::string_view what) {
-            text(fmt::format("{:<20} {}", keys, what));
+            text(fmt::format("{:<21} {}", keys, what));
         };
         for (const HeldBinding& binding : heldBindings()) row(binding.keyText, binding.what);
         ImGui::Separator();
@@ -81,6 +82,8 @@ void drawStrip(const Session& session, const std::string& message) {
         text(message);
         ImGui::PopTextWrapPos();
         if (ImGui::SmallButton("close")) session.log().dismissStrip();
+        // Above the other windows whatever was clicked last, but below what asks.
+        if (!ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup)) ImGui::BringWindowToDisplayFront(ImGui::GetCurrentWindow());
     }
     ImGui::End();
     ImGui::PopStyleColor();
@@ -94,7 +97,8 @@ void Panels::drawScene(Session& session) {
     if (beginPanel("Scene", sceneOpen_, {kMargin, kMenuHeight + kMargin}, {kPanelWidth, height})) {
         const ShownScene* const shown = session.shown();
         if (session.isLoading() || session.composer.isReading()) text("loading ...");
-        if (shown == nullptr && !session.isLoading()) note("drop a .pf_vox file, a scene or a folder here");
+        if (shown == nullptr && !session.isLoading())
+            note("Drop a .pf_vox file, a scene or a folder here, or open one with Ctrl+O. H shows all keys.");
         if (shown != nullptr) {
             text(nameOf(session));
             drawCounts(shown->scene.statistics());
@@ -109,7 +113,7 @@ void Panels::drawScene(Session& session) {
 void Panels::drawStatistics(const Session& session) {
     const ImVec2 window = ImGui::GetIO().DisplaySize;
     const ImVec2 place(std::max(kMargin, window.x - kPanelWidth - kMargin), kMenuHeight + kMargin);
-    if (beginPanel("Statistics", statisticsOpen_, place, {kPanelWidth, 274.0f})) {
+    if (beginPanel("Statistics", statisticsOpen_, place, {kPanelWidth, 284.0f})) {
         text(session.device().info().name);
         const std::vector<float> times(session.frameTimesMs().begin(), session.frameTimesMs().end());
         if (!times.empty()) {
@@ -120,8 +124,8 @@ void Panels::drawStatistics(const Session& session) {
             // A single slow frame, the first above all, does not flatten the others.
             const float top = std::min(worst, 3.0f * sorted[sorted.size() / 2]);
             ImGui::PlotLines("##frames", times.data(), static_cast<int>(times.size()), 0, nullptr, 0.0f, top,
-                             ImVec2(ImGui::GetContentRegionAvail().x, 50.0f));
-            text(fmt::format("frame {:.2f} ms on the device, worst {:.1f}", s.gpuMs, worst));
+                             ImVec2(ImGui::GetContentRegionAvail().x, 34.0f));
+            text(fmt::format("frame {} on the device, worst {}", millisecondsText(s.gpuMs), millisecondsText(worst)));
             const auto rays = static_cast<double>(s.cameraRays);
             text(fmt::format("{:.2f} million camera rays/s", s.gpuMs > 0.0 ? rays / s.gpuMs * 1e-3 : 0.0));
             const double secondary = static_cast<double>(s.sunRays + s.reflectionRays);

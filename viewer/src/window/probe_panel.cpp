@@ -1,9 +1,12 @@
 // The probe grid, the probes that light the scene, and one of them.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <imgui.h>
 
 #include <algorithm>
 #include <array>
+#include <string_view>
+#include <vector>
 
 #include "window/panels.hpp"
 #include "window/widgets.hpp"
@@ -26,11 +29,12 @@ void fitToScene(Session& session) {
 }
 
 std::string givenText(const ProbeGridRequest& probes) {
-    std::string given;
-    if (probes.position) given += " position";
-    if (probes.stepMetres) given += " step";
-    if (probes.count) given += " counts";
-    return given.empty() ? "fitted to the scene by who bakes" : "in the file:" + given + (given.size() < 20 ? "; else fitted" : "");
+    std::vector<std::string_view> given;
+    if (probes.position) given.emplace_back("start");
+    if (probes.stepMetres) given.emplace_back("step");
+    if (probes.count) given.emplace_back("counts");
+    if (given.empty()) return "fitted to the scene by who bakes";
+    return fmt::format("{} as in the file{}", fmt::join(given, ", "), given.size() < 3 ? ", else fitted" : "");
 }
 
 void drawField(Session& session) {
@@ -52,6 +56,29 @@ void drawField(Session& session) {
     note(fmt::format("maps {} depth, {} light, {} irradiance, {}", maps.depth, maps.light, maps.irradiance,
                      bytesText(probes->field.statistics().totalBytes())));
     if (!probes->ofThisScene || session.composer.editor.isChanged()) note("baked for another state of the scene");
+}
+
+/// Which maps an atlas view shows: one page after the other, or one probe.
+void drawAtlasChoice(Session& session) {
+    const std::optional<AtlasLayout> maps = session.shownAtlas();
+    if (!maps) return;
+    ImGui::Separator();
+    AtlasChoice& atlas = session.atlas;
+    bool alone = atlas.probe >= 0;
+    ImGui::BeginDisabled(!alone && !session.selectedProbe);
+    ImGui::Checkbox("the selected probe alone", &alone);
+    ImGui::EndDisabled();
+    atlas.probe = alone && session.selectedProbe ? static_cast<std::int32_t>(*session.selectedProbe) : alone ? atlas.probe : -1;
+    if (maps->pages < 2) return;
+    ImGui::BeginDisabled(maps->page == 0);
+    if (ImGui::ArrowButton("##page before", ImGuiDir_Left)) atlas.page = maps->page - 1;
+    ImGui::EndDisabled();
+    ImGui::SameLine();
+    ImGui::BeginDisabled(maps->page + 1 == maps->pages);
+    if (ImGui::ArrowButton("##page after", ImGuiDir_Right)) atlas.page = maps->page + 1;
+    ImGui::EndDisabled();
+    ImGui::SameLine();
+    text(fmt::format("page {} of {}: probes {} to {}", maps->page + 1, maps->pages, maps->first, maps->first + maps->count - 1));
 }
 
 }  // namespace
@@ -88,7 +115,7 @@ void drawProbeGrid(Session& session) {
 }
 
 void Panels::drawProbeDetail(Session& session) {
-    if (!session.selectedProbe) return note("click a probe of the grid for its figures");
+    if (!session.selectedProbe) return note(session.shownAtlas() ? "click a map for the probe's figures" : "click a probe of the grid for its figures");
     const std::uint32_t index = *session.selectedProbe;
     const ProbeGrid& grid = session.shown()->loaded.probes;
     const glm::uvec3 place = grid.placeOf(index);
@@ -122,13 +149,14 @@ void Panels::drawProbeDetail(Session& session) {
 
 void Panels::drawProbes(Session& session) {
     const ImVec2 window = ImGui::GetIO().DisplaySize;
-    const ImVec2 place(std::max(kMargin, window.x - kPanelWidth - kMargin), 310.0f);
-    if (beginPanel("Probes", probesOpen_, place, {kPanelWidth, std::max(120.0f, window.y - 318.0f)})) {
+    const ImVec2 place(std::max(kMargin, window.x - kPanelWidth - kMargin), 320.0f);
+    if (beginPanel("Probes", probesOpen_, place, {kPanelWidth, std::max(120.0f, window.y - 328.0f)})) {
         if (session.shown() == nullptr) {
             note("nothing is open");
         } else {
             drawProbeGrid(session);
             drawField(session);
+            drawAtlasChoice(session);
             if (session.shown() != nullptr) drawProbeDetail(session);
         }
     }

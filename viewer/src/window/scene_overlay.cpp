@@ -136,10 +136,21 @@ class OverlayDrawing {
     ImDrawList* list_;
 };
 
+/// A frame around the map of the selected probe.
+void drawSelectedMap(const Session& session, const AtlasLayout& maps) {
+    const auto corner = session.selectedProbe ? maps.cornerOf(*session.selectedProbe) : std::nullopt;
+    if (!corner || maps.count == 1) return;
+    const glm::dvec2 scale = session.windowSize / glm::dvec2(session.frames().size());
+    const glm::dvec2 from = glm::dvec2(*corner) * scale;
+    const glm::dvec2 to = from + static_cast<double>(maps.cell) * scale;
+    ImGui::GetBackgroundDrawList()->AddRect(at(from), at(to), kSelectedColour, 0.0f, ImDrawFlags_None, 2.0f);
+}
+
 }  // namespace
 
 void drawSceneOverlay(const Session& session, const glm::dvec2& cursor) {
     if (session.shown() == nullptr) return;
+    if (const std::optional<AtlasLayout> maps = session.shownAtlas()) return drawSelectedMap(session, *maps);
     OverlayDrawing(session, cursor).draw();
 }
 

@@ -4,14 +4,10 @@
 
 namespace pfvox::viewer {
 
-namespace {
-
-/// After a widget: what the user does next is another step.
-void endStep(SceneEditor& editor) {
-    if (ImGui::IsItemDeactivated()) editor.endGesture();
+void endStep(bool changed, SceneEditor& editor) {
+    if (!ImGui::IsItemDeactivated()) return;
+    changed ? editor.endGestureAfterNextEdit() : editor.endGesture();
 }
-
-}  // namespace
 
 void text(const std::string& line) {
     ImGui::TextUnformatted(line.c_str(), line.c_str() + line.size());
@@ -32,6 +28,11 @@ std::string bytesText(std::uint64_t bytes) {
                             : fmt::format("{:.2f} GiB", value / 1073741824.0);
 }
 
+std::string millisecondsText(double ms) {
+    if (ms >= 10e3) return fmt::format("{:.1f} s", 1e-3 * ms);
+    return fmt::format("{:.{}f} ms", ms, ms < 10.0 ? 2 : ms < 100.0 ? 1 : 0);
+}
+
 bool beginPanel(const char* title, bool& open, ImVec2 at, ImVec2 size) {
     // Until the user chooses others.
     ImGui::SetNextWindowPos(at, ImGuiCond_FirstUseEver);
@@ -46,14 +47,14 @@ bool slider(const char* label, double& value, double low, double high, const cha
 bool dragVector(const char* label, glm::dvec3& value, const DragRange& range, SceneEditor& editor) {
     const bool changed = ImGui::DragScalarN(label, ImGuiDataType_Double, &value.x, 3, range.speed, &range.low,
                                             &range.high, range.format, ImGuiSliderFlags_AlwaysClamp);
-    endStep(editor);
+    endStep(changed, editor);
     return changed;
 }
 
 bool dragNumber(const char* label, double& value, const DragRange& range, SceneEditor& editor) {
     const bool changed = ImGui::DragScalar(label, ImGuiDataType_Double, &value, range.speed, &range.low, &range.high,
                                            range.format, ImGuiSliderFlags_AlwaysClamp);
-    endStep(editor);
+    endStep(changed, editor);
     return changed;
 }
 
@@ -61,14 +62,14 @@ bool dragCounts(const char* label, glm::uvec3& value, std::uint32_t high, SceneE
     const std::uint32_t low = 1;
     const bool changed = ImGui::DragScalarN(label, ImGuiDataType_U32, &value.x, 3, 0.1f, &low, &high, "%u",
                                             ImGuiSliderFlags_AlwaysClamp);
-    endStep(editor);
+    endStep(changed, editor);
     return changed;
 }
 
 bool editColour(const char* label, glm::dvec3& value, SceneEditor& editor) {
     glm::vec3 colour(value);
     const bool changed = ImGui::ColorEdit3(label, &colour.x, ImGuiColorEditFlags_HDR | ImGuiColorEditFlags_Float);
-    endStep(editor);
+    endStep(changed, editor);
     if (changed) value = glm::max(glm::dvec3(colour), glm::dvec3(0.0));
     return changed;
 }

@@ -19,6 +19,8 @@ void text(const std::string& line);
 /// Dimmer, for what explains.
 void note(const std::string& line);
 std::string bytesText(std::uint64_t bytes);
+/// Three figures at least: "8.25 ms", "1075 ms", "15.6 s".
+std::string millisecondsText(double ms);
 
 /// Begins a panel at its first place; flags keep it from taking the keys away when it appears.
 bool beginPanel(const char* title, bool& open, ImVec2 at, ImVec2 size);
@@ -33,6 +35,9 @@ struct DragRange {
     double high = 1e9;
     const char* format = "%.3f";
 };
+/// Right after a widget: when it was left, what the user does next is another step to undo. What `changed` in this very
+/// frame, and is applied after this call, still belongs to the step: in a slow frame that is the whole number with Return.
+void endStep(bool changed, SceneEditor& editor);
 /// True while the user changes it. The step to undo ends when the field is left.
 bool dragVector(const char* label, glm::dvec3& value, const DragRange& range, SceneEditor& editor);
 bool dragNumber(const char* label, double& value, const DragRange& range, SceneEditor& editor);
