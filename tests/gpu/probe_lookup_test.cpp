@@ -62,6 +62,25 @@ TEST_F(ProbeLookupTest, EveryPointHasAValueAndMostAreExact) {
     EXPECT_LE(rmse, 0.03);  // of a mean of 0.75: texels wider than what they blend
 }
 
+/// The floor ends a centimetre below the border of its cells, in whose upper neighbours there is nothing: it is looked up
+/// in the cells that have its samples. One probe is active, and not among the eight around.
+TEST_F(ProbeLookupTest, APlaneNearTheBorderOfItsCellsFindsItsProbes) {
+    const BoxRoom room(0);
+    ProbeField field = makeRoomField(room, {.resolution = kSmall, .albedo = 1.0f});
+    for (std::size_t i = 1; i < field.probes.size(); ++i) {
+        field.probes[i] = {};
+        field.probes[i].record.state = ProbeState::Inactive;
+    }
+    addProximity(field, room, ProximityGrid{.start = {-0.1f, -0.39f, -0.1f}, .step = {0.5f, 0.4f, 0.5f}, .counts = {21, 12, 21}, .probes = {}});
+    std::vector<SurfaceSample> floor = roomSurface(room, 50000, 3);
+    std::erase_if(floor, [](const SurfaceSample& sample) {
+        const glm::vec3& p = sample.position;
+        return sample.normal.y < 0.9f || p.x < 4.0f || p.x > 6.0f || p.z < 4.0f || p.z > 6.0f;
+    });
+    ASSERT_GT(floor.size(), 100u);
+    for (const ProbeLookup& found : lookUp(field, floor, {.voxelMetres = 0.1f})) EXPECT_EQ(found.tier, ProbeTier::Texels);
+}
+
 /// What stands in for the maps of an inactive probe is never read: there is nothing at its addresses. Even so, all points
 /// have a value, those too around which no probe is active.
 TEST_F(ProbeLookupTest, InactiveProbesAreNotRead) {

@@ -117,11 +117,7 @@ inline ProbeField makeRoomField(const BoxRoom& room, const RoomFieldSettings& se
     return field;
 }
 
-inline void addProximity(ProbeField& field, const BoxRoom& room, glm::uvec3 cells) {
-    const ProximityGrid shape{.start = glm::vec3{-5e-4f},
-                              .step = (room.size() + 1e-3f) / glm::vec3{cells},
-                              .counts = cells,
-                              .probes = {}};
+inline void addProximity(ProbeField& field, const BoxRoom& room, const ProximityGrid& shape) {
     const CellSurfaces surfaces = sortIntoCells(roomSurface(room, 200000, 5), shape);
     std::vector<ProbeRecord> records;
     for (const ProbeData& probe : field.probes) records.push_back(probe.record);
@@ -133,6 +129,11 @@ inline void addProximity(ProbeField& field, const BoxRoom& room, glm::uvec3 cell
          .surfaces = surfaces});
     ASSERT_TRUE(built) << describe(built.error());
     field.proximity = std::move(built->grid);
+}
+
+inline void addProximity(ProbeField& field, const BoxRoom& room, glm::uvec3 cells) {
+    const glm::vec3 step = (room.size() + 1e-3f) / glm::vec3{cells};
+    addProximity(field, room, ProximityGrid{.start = glm::vec3{-5e-4f}, .step = step, .counts = cells, .probes = {}});
 }
 
 inline Result<gpu::GpuProbes> uploadField(gpu::Device& device, const ProbeField& field,
