@@ -74,7 +74,7 @@ void forEachSample(const PlacedModel& placed, const ProximityGrid& shape, const 
 }  // namespace
 
 ProximityGrid proximityShape(const ProbeGrid& probes, const glm::uvec3& cells, const WorldBounds& surfaces) {
-    constexpr float kMargin = 0.1f;  // of a step: lookups ask a little above the surface
+    constexpr float kMargin = 0.1f;  // of a step: what lies on the faces of the scene's box is inside
     glm::vec3 low = probes.start - kProximityReach * probes.step;
     glm::vec3 high = probes.start + (glm::vec3(probes.counts - 1u) + kProximityReach) * probes.step;
     if (!surfaces.empty()) {
