@@ -13,14 +13,17 @@ uint bitOfRank(uint mask, uint rank) {
 }
 
 // Samples go round the surfaces under the texel.
-SeenTexel surfaceOfSample(BakeWave wave, uint probe, uvec2 texel, uint mask, uint sampleIndex, out vec3 origin) {
+struct PathStart {
+    vec3 origin;
+    vec3 normal;
+};
+PathStart startOfSample(BakeWave wave, uint probe, uvec2 texel, uint mask, uint sampleIndex) {
     uint block = wave.depthEdge / wave.lightEdge;
     uint bit = bitOfRank(mask, sampleIndex % uint(bitCount(mask)));
     uvec2 at = texel * block + uvec2(bit & 3u, bit >> 2);
     SeenTexel seen = SeenTexels(wave.texels).at[seenIndex(wave, probe, at)];
     vec3 position = Probes(wave.probes).at[probe].position + seen.metres * directionOfTexel(at.x, at.y, wave.depthEdge);
-    origin = position + seen.offset * seen.normal;
-    return seen;
+    return PathStart(position + seen.lift, unpackWideNormal(seen.normal));
 }
 
 void main() {
@@ -44,18 +47,17 @@ void main() {
         uint sampleIndex = item.y * kBatchSamples + path / kTileTexels % kBatchSamples;
         uint key = texelKey(bake.seedLow, bake.seedHigh, Probes(wave.probes).at[probe].index,
                             texel.x + wave.lightEdge * texel.y);
-        vec3 origin;
-        SeenTexel seen = surfaceOfSample(wave, probe, texel, mask, sampleIndex, origin);
+        PathStart start = startOfSample(wave, probe, texel, mask, sampleIndex);
         if (looksForEmitters(bake)) {
             Lobes white = Lobes(vec3(1.0), vec3(0.0), 0.0, 1.0, 0.0);
             float pick = randomPair(key, 0u, kPairEmitterAndLobe, sampleIndex).x;
             vec2 u = randomPair(key, 0u, kPairEmitterPoint, sampleIndex);
-            shadow = towardsEmitter(bake, white, origin, seen.normal, seen.normal, pick, u);
+            shadow = towardsEmitter(bake, white, start.origin, start.normal, start.normal, pick, u);
             shadow.path = path;
         }
         vec3 local = cosineDirection(randomPair(key, 0u, kPairDirection, sampleIndex));
-        vec3 direction = inFrame(local, seen.normal);
-        Paths(wave.paths).at[path] = PathState(origin, local.z / kPi, direction, 0.0, vec3(1.0), 0u, kNoMaterial, key,
+        vec3 direction = inFrame(local, start.normal);
+        Paths(wave.paths).at[path] = PathState(start.origin, local.z / kPi, direction, 0.0, vec3(1.0), 0u, kNoMaterial, key,
                                                sampleIndex, 0u);
     }
     queueRay(wave, push.set, alive, path);

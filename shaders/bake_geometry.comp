@@ -11,18 +11,18 @@ SeenTexel seen(BakeWave wave, BakeScene bake, vec3 probe, vec3 direction, inout 
     Ray ray = Ray(probe, kInfinity, direction, 0.0);
     Hit hit = castRay(scene, ray, counts);
     if (hit.instance == kNoInstance)
-        return SeenTexel(vec3(0.0), -1.0, skyRadiance(bake, direction), kDepthMiss, vec3(0.0), 0.0);
+        return SeenTexel(vec3(0.0), -1.0, skyRadiance(bake, direction), kDepthMiss, vec3(0.0), 0u);
     Surface surface = surfaceOf(scene, ray, hit);
     MaterialRecord material = materialOf(scene, surface);
     SeenTexel texel;
-    texel.normal = surface.normal;
+    texel.lift = surface.lift;
     texel.metres = hit.t;
     texel.albedo = albedoOf(scene, surface);
-    texel.offset = rayOffset(surface);
+    texel.normal = packWideNormal(surface.normal);
     texel.word = packDepthNormal(depthCode(hit.t, wave.depthScale, wave.depthLogRange), surface.normal);
     texel.direct = emissionOf(material);
     if (hasSun(bake, surface.normal)) {
-        vec3 sun = sunAt(bake, surface.position + texel.offset * surface.normal, counts);
+        vec3 sun = sunAt(bake, startOf(surface), counts);
         texel.direct += texel.albedo * sun * (dot(surface.normal, -bake.sunDirection) / kPi);
     }
     return texel;

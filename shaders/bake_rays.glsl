@@ -4,6 +4,7 @@
 #define PFVOX_BAKE_RAYS_GLSL
 
 #include "shared/bake.glsl.h"
+#include "shared/probe_maths.glsl.h"
 #include "octree_trace.glsl"
 #include "material.glsl"
 #include "sky.glsl"
@@ -27,12 +28,11 @@ Hit castRay(Scene scene, Ray ray, inout RayCounts counts) {
     return traceClosest(scene, ray, counts.trace);
 }
 
-MaterialRecord materialOf(Scene scene, Surface surface) { return Materials(scene.header.materials).at[surface.material]; }
+// Finer than packNormal: what directions are drawn about.
+uint packWideNormal(vec3 normal) { return packSnorm2x16(octEncode(normal)); }
+vec3 unpackWideNormal(uint word) { return octDecode(unpackSnorm2x16(word)); }
 
-// How far a ray starts off a surface, along its normal.
-float rayOffset(Surface surface) {
-    return max(kRayOffsetVoxels * surface.voxelMetres, 4e-7 * maxOf(abs(surface.position)));
-}
+MaterialRecord materialOf(Scene scene, Surface surface) { return Materials(scene.header.materials).at[surface.material]; }
 
 // Where a ray leaves the cell that it has hit.
 float exitOf(Scene scene, Ray ray, Hit hit) {

@@ -35,7 +35,7 @@ bool passGlass(Scene scene, inout PathState path, Hit hit, Surface surface, Mate
     if (enters) {
         float reflectance = glassReflectance(material, abs(dot(surface.normal, path.direction)));
         if (u.x < reflectance) {
-            path.origin = surface.position + rayOffset(surface) * surface.normal;
+            path.origin = startOf(surface);
             path.direction = reflect(path.direction, surface.normal);
             path.density = -1.0;
             path.lastGlass = kNoMaterial;
@@ -79,7 +79,7 @@ bool extendPath(BakeScene bake, inout PathState path, Hit hit, inout Vertex foun
     if (bounces >= bake.maxBounces) return false;
     ++path.steps;
 
-    vec3 origin = surface.position + rayOffset(surface) * surface.normal;
+    vec3 origin = startOf(surface);
     Lobes lobes = lobesOf(material, albedoOf(scene, surface), surface.normal, toViewer);
     if (hasSun(bake, surface.normal)) {
         vec3 value = evaluateLobes(lobes, surface.normal, toViewer, -bake.sunDirection).value;

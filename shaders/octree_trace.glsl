@@ -383,6 +383,7 @@ bool traceAny(Scene scene, Ray ray, inout TraceStatistics statistics) {
 struct Surface {
     vec3 position;  // metres
     vec3 normal;    // unit length, against the ray
+    vec3 lift;      // from the position to where rays leave the surface, metres
     uint face;
     ivec3 voxel;         // model voxels
     uint material;       // of the scene; of a level of detail: its commonest one
@@ -427,6 +428,7 @@ struct CubeHit {
     bool positive;    // the ray goes up along that axis
     ivec3 voxel;      // from the cube's corner
     ivec3 leafMin;    // of the cell that was hit
+    vec3 within;      // of the hit point in the voxel, in voxels; rounding may put it a little outside
 };
 
 CubeHit cubeHitOf(ModelRecord model, vec3 origin, vec3 direction, Hit hit) {
@@ -442,10 +444,37 @@ CubeHit cubeHitOf(ModelRecord model, vec3 origin, vec3 direction, Hit hit) {
     // The leaf may be larger than a voxel: the voxel is the one at the hit point, held within the leaf.
     found.leafMin = ivec3((hit.corner - 1.0) * voxelsPerCube);
     ivec3 leafMax = found.leafMin + int(size * voxelsPerCube) - 1;
-    ivec3 voxel = ivec3(floor((origin + hit.t * direction - 1.0) * voxelsPerCube));
+    vec3 point = (origin + hit.t * direction - 1.0) * voxelsPerCube;
+    ivec3 voxel = ivec3(floor(point));
     if (!inside) voxel[found.axis] = found.positive ? found.leafMin[found.axis] : leafMax[found.axis];
     found.voxel = clamp(voxel, found.leafMin, leafMax);
+    found.within = point - vec3(found.voxel);
     return found;
+}
+
+vec3 cubeRow(InstanceRecord instance, uint axis) {
+    return axis == 0u ? instance.cubeFromWorld0.xyz
+         : axis == 1u ? instance.cubeFromWorld1.xyz : instance.cubeFromWorld2.xyz;
+}
+
+float rayOffset(float voxelMetres, vec3 position) {
+    return max(kRayOffsetVoxels * voxelMetres, 4e-7 * maxOf(abs(position)));
+}
+
+// Along the normal, and off the sides of the face where these are as near: in an inner edge a point that rounding has put
+// a hair beyond the side lies within the solid voxel there, and all that starts in it is dark.
+vec3 liftOf(InstanceRecord instance, CubeHit found, float voxelEdge, vec3 normal, float offset) {
+    vec3 lift = offset * normal;
+    if (found.face == kFaceInside) return lift;
+    for (uint i = 1u; i < 3u; ++i) {
+        uint axis = (found.axis + i) % 3u;
+        vec3 row = cubeRow(instance, axis);
+        float perLength = inversesqrt(dot(row, row));
+        float below = found.within[axis] * voxelEdge * perLength;  // metres to the lower side
+        float above = voxelEdge * perLength - below;
+        if (min(below, above) < offset) lift += (below < above ? offset : -offset) * perLength * row;
+    }
+    return lift;
 }
 
 Surface surfaceOf(Scene sceneBuffer, Ray ray, Hit hit) {
@@ -458,12 +487,13 @@ Surface surfaceOf(Scene sceneBuffer, Ray ray, Hit hit) {
     surface.face = found.face;
     surface.voxel = model.originVoxels + found.voxel;
 
-    vec3 row = found.axis == 0u ? instance.cubeFromWorld0.xyz
-             : found.axis == 1u ? instance.cubeFromWorld1.xyz : instance.cubeFromWorld2.xyz;
+    vec3 row = cubeRow(instance, found.axis);
     float perLength = inversesqrt(dot(row, row));
     surface.normal = (found.positive ? -perLength : perLength) * row;
     surface.voxelMetres = edgeOf(int(model.leafScale)) * perLength;
     surface.position = ray.origin + hit.t * ray.direction;
+    surface.lift = liftOf(instance, found, edgeOf(int(model.leafScale)), surface.normal,
+                          rayOffset(surface.voxelMetres, surface.position));
     surface.leafLog2 = hit.scale - int(model.leafScale);
     surface.lodColor = 0u;
     WideNode node = WideNodes(model.nodes).at[hit.node];
@@ -506,6 +536,9 @@ int octreeLeafLog2(Scene sceneBuffer, Hit hit) {
     }
     return hit.scale - int(model.leafScale) + (same ? 1 : 0);
 }
+
+// Where rays leave the surface.
+vec3 startOf(Surface surface) { return surface.position + surface.lift; }
 
 vec3 linearFromSrgb(vec3 c) {
     return mix(c / 12.92, pow((c + 0.055) / 1.055, vec3(2.4)), greaterThan(c, vec3(0.04045)));

@@ -21,6 +21,8 @@ const float kPlaneSlackShare = 1e-3;   // of the distance to the plane: depth co
 const float kMixedTexelWeight = 0.05;
 const float kLeastTexelWeight = 0.02;  // of a neighbour that lies on the point's own texel's border
 const float kMuchUnseen = 0.5;
+const float kFacingAway = -0.1;
+const float kFlattest = 0.2;  // cosine
 const float kTexelConfidence = 4.0;    // a quarter of a texel's width that agrees is as good as all of it
 
 struct ProbeLight {
@@ -34,13 +36,29 @@ struct ProbeLight {
 struct SurfacePoint {
     vec3 position;
     vec3 normal;
+    float spread;  // edge of a level of detail, whose surfaces lie anywhere within it; 0 = the point is on its surface
 };
+
+// Whether a depth texel shows a surface within a level of detail: one that does not face away from the viewer, as near as
+// the node is large. The node's own face says nothing of the planes in it.
+bool showsNode(ProbeFieldRecord field, ProbeEntry probe, SurfacePoint point, uint x, uint y) {
+    uint word = ProbeWords(probe.depthNormal).at[x + field.depthEdge * y];
+    if (isMiss(word)) return false;
+    vec3 normal = normalOf(word);
+    if (dot(normal, point.normal) < kFacingAway) return false;
+    vec3 direction = directionOfTexel(x, y, field.depthEdge);
+    float metres = metresOfCode(field, depthCodeOf(word));
+    vec3 apart = probe.position + metres * direction - point.position;
+    float slack = point.spread + kPlaneVoxels * field.voxelMetres;
+    float footprint = texelAngle(field.depthEdge) * metres / max(-dot(direction, normal), kFlattest);
+    return abs(dot(apart, normal)) < slack && dot(apart, apart) < (2.0 * slack + footprint) * (2.0 * slack + footprint);
+}
 
 // Share of the depth texels under one light texel that show the plane of the surface. Each is asked where its own ray
 // meets that plane, so that the slope of the surface does not matter and planes a voxel apart stay apart.
 float agreementOf(ProbeFieldRecord field, ProbeEntry probe, SurfacePoint point, ivec2 lightTexel) {
     float height = dot(point.position - probe.position, point.normal);  // of the plane, as the probe sees it
-    if (height >= 0.0) return 0.0;
+    if (height >= 0.0 && point.spread <= 0.0) return 0.0;
     uint block = max(field.depthEdge / field.lightEdge, 1u);
     float tolerance = max(kPlaneVoxels * field.voxelMetres, kPlaneSlackShare * -height);
     uint packed = packNormal(point.normal);
@@ -48,6 +66,10 @@ float agreementOf(ProbeFieldRecord field, ProbeEntry probe, SurfacePoint point, 
     for (uint i = 0u; i < block * block; ++i) {
         uint x = min(uint(lightTexel.x) * block + i % block, field.depthEdge - 1u);
         uint y = min(uint(lightTexel.y) * block + i / block, field.depthEdge - 1u);
+        if (point.spread > 0.0) {
+            agreeing += uint(showsNode(field, probe, point, x, y));
+            continue;
+        }
         uint word = ProbeWords(probe.depthNormal).at[x + field.depthEdge * y];
         if (isMiss(word)) continue;
         if (word >> 16 != packed && dot(normalOf(word), point.normal) <= kSurfaceMinNormalDot) continue;
@@ -85,7 +107,9 @@ vec4 lightSeenBy(ProbeFieldRecord field, ProbeEntry probe, SurfacePoint point) {
 bool ownTexelSees(ProbeFieldRecord field, ProbeEntry probe, SurfacePoint point) {
     vec3 toPoint = point.position - probe.position;
     if (dot(toPoint, toPoint) < 1e-12) return false;
-    uint word = ProbeWords(probe.depthNormal).at[texelIndex(toPoint, field.depthEdge)];
+    uint texel = texelIndex(toPoint, field.depthEdge);
+    if (point.spread > 0.0) return showsNode(field, probe, point, texel % field.depthEdge, texel / field.depthEdge);
+    uint word = ProbeWords(probe.depthNormal).at[texel];
     return seesSurface(word, toPoint, point.normal, field.depthEdge, field.depthScaleAndLogRange);
 }
 
@@ -100,16 +124,28 @@ void addTexelsOf(ProbeFieldRecord field, ProbeEntry probe, SurfacePoint point, i
     vec3 toPoint = point.position - probe.position;
     float squared = max(dot(toPoint, toPoint), 1e-8);
     // Texels a square metre of the surface.
-    float weight = seen.w * max(-dot(toPoint, point.normal), 0.0) * inversesqrt(squared) / squared;
+    float cosine = -dot(toPoint, point.normal) * inversesqrt(squared);
+    float weight = seen.w * max(cosine, point.spread > 0.0 ? kFlattest : 0.0) / squared;
     sum.weighed += weight * vec4(seen.rgb, 1.0);
     sum.unseen *= 1.0 - seen.w;
+}
+
+// The list of the cell that the surface is in. That of a level of detail may lie behind the node's face.
+uint listOf(ProbeFieldRecord field, SurfacePoint point) {
+    uint list = proximityListOf(field, point.position, point.normal);
+    if (point.spread <= 0.0) return list;
+    for (uint i = 1u; i <= 2u; ++i) {
+        if (list != kNoProbeIndex && ProbeWords(field.cells).at[list] != kNoProbeIndex) break;
+        list = proximityListOf(field, point.position - 0.5 * float(i) * point.spread * point.normal, point.normal);
+    }
+    return list;
 }
 
 // Of the probes that the cell names; where they do not see the point, of the eight around. One loop for both: drivers unroll
 // what they inline, and lightSeenBy is long.
 vec4 lightOfTexels(ProbeFieldRecord field, SurfacePoint point) {
     if (field.lightEdge == 0u || field.depthEdge == 0u) return vec4(0.0);
-    uint list = proximityListOf(field, point.position, point.normal);
+    uint list = listOf(field, point);
     if (list == kNoProbeIndex) return vec4(0.0);
     ivec3 cell = probeCellOf(field, point.position);
     TexelSum sum = TexelSum(vec4(0.0), 1.0);
@@ -247,9 +283,9 @@ vec4 lightOfNearest(ProbeFieldRecord field, SurfacePoint point) {
 
 // ---- All of it ----
 
-// `normal` is that of the surface, unit, on the side that is seen.
-ProbeLight lookUpProbes(ProbeFieldRecord field, vec3 position, vec3 normal) {
-    SurfacePoint point = SurfacePoint(position, normal);
+// `normal` is that of the surface, unit, on the side that is seen. `spread`: edge of a level of detail in metres, else 0.
+ProbeLight lookUpProbes(ProbeFieldRecord field, vec3 position, vec3 normal, float spread) {
+    SurfacePoint point = SurfacePoint(position, normal, spread);
     vec4 texels = lightOfTexels(field, point);
     vec4 rest = vec4(0.0);
     bool fromGrid = false;

@@ -14,7 +14,7 @@ layout(buffer_reference, std430, buffer_reference_align = 16) writeonly buffer A
 layout(push_constant) uniform Push { ProbeQueryParameters push; };
 
 ProbeAnswerRecord answerLookup(ProbeFieldRecord field, ProbeQueryRecord query) {
-    ProbeLight light = lookUpProbes(field, query.position, query.direction);
+    ProbeLight light = lookUpProbes(field, query.position, query.direction, 0.0);
     return ProbeAnswerRecord(light.indirect, 0.0, query.direction, light.tier, vec4(light.weights, 0.0), kNoProbeIndex, 0u,
                              0u, 0u);
 }

@@ -53,8 +53,7 @@ bool referenceGlass(Scene scene, inout ReferencePath path, Hit hit, Surface surf
     path.lastGlass = surface.material;
     if (enters) {
         if (random() < glassReflectance(material, abs(dot(surface.normal, path.ray.direction)))) {
-            path.ray = Ray(surface.position + rayOffset(surface) * surface.normal, kInfinity,
-                           reflect(path.ray.direction, surface.normal), 0.0);
+            path.ray = Ray(startOf(surface), kInfinity, reflect(path.ray.direction, surface.normal), 0.0);
             path.density = -1.0;
             path.lastGlass = kNoMaterial;
             return true;
@@ -114,7 +113,7 @@ vec3 referenceLight(BakeScene bake, vec3 origin, vec3 normal, vec2 first) {
         if (maxOf(emission) > 0.0)
             total += path.throughput * emission * shareOfDirection(bake, path, emission, dot(surface.normal, toViewer));
         if (bounces++ >= bake.maxBounces) return total;
-        vec3 from = surface.position + rayOffset(surface) * surface.normal;
+        vec3 from = startOf(surface);
         Lobes lobes = lobesOf(material, albedoOf(scene, surface), surface.normal, toViewer);
         if (hasSun(bake, surface.normal))
             total += path.throughput * evaluateLobes(lobes, surface.normal, toViewer, -bake.sunDirection).value *

@@ -30,7 +30,7 @@ void main() {
         VerifyPixel fresh = VerifyPixel(vec4(vec3(0.0), -1.0), vec4(0.0), vec4(0.0), 0u, 0u, 0u, 0u);
         if (hit.instance != kNoInstance) {
             Surface surface = surfaceOf(scene, ray, hit);
-            ProbeLight light = lookUpProbes(ProbeFieldRef(push.field).field, surface.position, surface.normal);
+            ProbeLight light = lookUpProbes(ProbeFieldRef(push.field).field, surface.position, surface.normal, 0.0);
             fresh.lookup = vec4(light.indirect, float(light.tier));
             fresh.material = materialOf(scene, surface).type;
         }
@@ -39,7 +39,7 @@ void main() {
     }
     if (hit.instance == kNoInstance) return;
     Surface surface = surfaceOf(scene, ray, hit);
-    vec3 origin = surface.position + rayOffset(surface) * surface.normal;
+    vec3 origin = startOf(surface);
     vec4 even = vec4(0.0);
     vec4 odd = vec4(0.0);
     for (uint i = 0u; i < push.sampleCount; ++i) {

@@ -52,34 +52,40 @@ vec3 skyRadiance(ViewParameters view, vec3 direction) {
 
 // ---- What is handed from pass to pass ----
 
-uint packWideNormal(vec3 normal) { return packSnorm2x16(octEncode(normal)); }
-vec3 unpackWideNormal(uint word) { return octDecode(unpackSnorm2x16(word)); }
+// Of a level of detail, what it stands for: rays start as much farther off it.
+float cellMetres(Surface surface) {
+    return surface.lodColor != 0u ? exp2(float(surface.leafLog2)) * surface.voxelMetres : surface.voxelMetres;
+}
+uint packLift(Surface surface) {
+    return packSnorm4x8(vec4(surface.lift / (2.0 * rayOffset(surface.voxelMetres, surface.position)), 0.0));
+}
+vec3 liftedFrom(vec3 position, uint lift, float cellMetres) {
+    return position + 2.0 * rayOffset(cellMetres, position) * unpackSnorm4x8(lift).xyz;
+}
 
 // A point on a surface as passes hand it on.
 struct SurfacePart {
     vec3 position;
     vec3 normal;
-    float offset;  // of rays that start there
+    vec3 start;    // of rays that leave it
+    float spread;  // edge of a level of detail, metres; else 0
     MaterialRecord material;
     vec3 albedo;
 };
-
-float startOffset(float voxelMetres, vec3 position) {
-    return max(kRayOffsetVoxels * voxelMetres, 4e-7 * maxOf(abs(position)));
-}
 
 SurfacePart partOf(Scene scene, SeenPixel seen, Ray ray) {
     SurfacePart part;
     part.position = ray.origin + seen.distance * ray.direction;
     part.normal = unpackWideNormal(seen.normal);
-    part.offset = startOffset(seen.voxelMetres, part.position);
+    part.start = liftedFrom(part.position, seen.lift, seen.cellMetres);
+    part.spread = seen.lodColor != 0u ? seen.cellMetres : 0.0;
     part.material = Materials(scene.header.materials).at[seen.material];
     part.albedo = seen.lodColor != 0u ? linearFromSrgb(unpackUnorm4x8(seen.lodColor).rgb) : part.material.albedo;
     return part;
 }
 
 SurfacePart partOf(Scene scene, Surface surface) {
-    return SurfacePart(surface.position, surface.normal, rayOffset(surface), materialOf(scene, surface),
+    return SurfacePart(surface.position, surface.normal, startOf(surface), 0.0, materialOf(scene, surface),
                        albedoOf(scene, surface));
 }
 

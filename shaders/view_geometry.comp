@@ -27,13 +27,13 @@ Seen look(Scene scene, Ray ray, inout RayCounts counts) {
         float distance = kHasGlass == 0u ? hit.t : length(surface.position - camera);
         if (kHasGlass == 0u || !letsThrough(material) || i == kMaxGlassSteps) {
             seen.pixel = SeenPixel(distance, surface.material, packWideNormal(surface.normal), surface.lodColor,
-                                   surface.voxelMetres, 0u, packLight(through), 0u);
+                                   cellMetres(surface), 0u, packLight(through), packLift(surface));
             return seen;
         }
         if (entersGlass(surface, lastGlass)) {
             if (seen.shine.distance == kInfinity)
                 seen.shine = SeenShine(vec3(0.0), distance, surface.material, packWideNormal(surface.normal),
-                                       surface.voxelMetres, 0u);
+                                       cellMetres(surface), packLift(surface));
             float cosine = abs(dot(surface.normal, ray.direction));
             through *= (1.0 - glassReflectance(material, cosine)) * glassTint(material);
         }

@@ -14,7 +14,7 @@ vec3 colourOf(ViewParameters view, Ray ray, SeenPixel seen, uint index) {
         return finalColour(view, ray, seen, index, skyRadiance(view, ray.direction));
     }
     SurfacePart part = partOf(Scene(push.scene), seen, ray);
-    ProbeLight light = indirectAt(view, part.position, part.normal);
+    ProbeLight light = indirectAt(view, part);
 #ifdef PFVOX_VIEW_PROBES
     count(kCountTiers + light.tier, 1u);
     count(kCountWithoutValue, uint(light.tier == kTierNone));

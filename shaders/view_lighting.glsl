@@ -24,13 +24,13 @@ vec3 ambientRadiance(ViewParameters view, vec3 normal) {
 }
 
 // A value that is not finite counts as none.
-ProbeLight indirectAt(ViewParameters view, vec3 position, vec3 normal) {
+ProbeLight indirectAt(ViewParameters view, SurfacePart part) {
 #ifdef PFVOX_VIEW_PROBES
-    ProbeLight light = lookUpProbes(ProbeFieldRef(view.field).field, position, normal);
+    ProbeLight light = lookUpProbes(ProbeFieldRef(view.field).field, part.position, part.normal, part.spread);
     if (any(isnan(light.indirect)) || any(isinf(light.indirect))) light = ProbeLight(vec3(0.0), vec3(0.0), kTierNone);
     return light;
 #else
-    return ProbeLight(ambientRadiance(view, normal), vec3(0.0), kTierNone);
+    return ProbeLight(ambientRadiance(view, part.normal), vec3(0.0), kTierNone);
 #endif
 }
 
@@ -45,7 +45,7 @@ vec3 radianceFrom(ViewParameters view, SurfacePart part, vec3 toViewer, vec3 sun
 
 vec3 sunShare(ViewParameters view, Scene scene, SurfacePart part, inout RayCounts counts) {
     if (maxOf(view.sunIrradiance) <= 0.0 || dot(part.normal, -view.sunDirection) <= 0.0) return vec3(0.0);
-    Ray ray = Ray(part.position + part.offset * part.normal, kInfinity, -view.sunDirection, 0.0);
+    Ray ray = Ray(part.start, kInfinity, -view.sunDirection, 0.0);
     return transmittance(scene, ray, counts);
 }
 

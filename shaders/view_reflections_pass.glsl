@@ -18,7 +18,7 @@ vec3 radianceAlong(ViewParameters view, Scene scene, Ray ray, inout RayCounts co
             SurfacePart part = partOf(scene, surface);
             if (part.material.type == kMaterialMetal) part.material.type = 0u;  // what it mirrors is about as bright
             vec3 sun = sunShare(view, scene, part, counts);
-            vec3 indirect = indirectAt(view, part.position, part.normal).indirect;
+            vec3 indirect = indirectAt(view, part).indirect;
             return through * radianceFrom(view, part, -ray.direction, sun, indirect);
         }
         if (entersGlass(surface, lastGlass))
@@ -61,22 +61,22 @@ vec3 surfaceShine(ViewParameters view, Scene scene, Ray ray, SeenPixel seen, vec
     vec3 weight;
     vec3 direction = mirrored(lobes, part.material.roughness, part.normal, -ray.direction, u, weight);
     if (maxOf(weight) < 1e-3) return vec3(0.0);
-    Ray away = Ray(part.position + part.offset * part.normal, kInfinity, direction, 0.0);
+    Ray away = Ray(part.start, kInfinity, direction, 0.0);
     return unpackLight(seen.through) * weight * radianceAlong(view, scene, away, counts);
 }
 
 vec3 glassShine(ViewParameters view, Scene scene, Ray ray, SeenShine shine, inout RayCounts counts) {
-    SeenPixel glass = SeenPixel(shine.distance, shine.material, shine.normal, 0u, shine.voxelMetres, 0u, 0u, 0u);
+    SeenPixel glass = SeenPixel(shine.distance, shine.material, shine.normal, 0u, shine.cellMetres, 0u, 0u, shine.lift);
     SurfacePart part = partOf(scene, glass, ray);
     float reflectance = glassReflectance(part.material, abs(dot(part.normal, ray.direction)));
     vec3 radiance = vec3(0.0);
     if (reflectance > 1e-3) {
-        Ray away = Ray(part.position + part.offset * part.normal, kInfinity, reflect(ray.direction, part.normal), 0.0);
+        Ray away = Ray(part.start, kInfinity, reflect(ray.direction, part.normal), 0.0);
         radiance += reflectance * radianceAlong(view, scene, away, counts);
     }
     if (part.material.transparency < 1.0) {
         vec3 sun = sunShare(view, scene, part, counts);
-        vec3 indirect = indirectAt(view, part.position, part.normal).indirect;
+        vec3 indirect = indirectAt(view, part).indirect;
         radiance += (1.0 - reflectance) * radianceFrom(view, part, -ray.direction, sun, indirect);
     }
     return radiance;

@@ -24,7 +24,6 @@ PFVOX_CONSTANT(uint, kMaxBlockEdge, 4u);     // texels of the depth map along on
 PFVOX_CONSTANT(uint, kRouletteBounce, 3u);   // the first bounce that roulette may end
 PFVOX_CONSTANT(uint, kMaxPathBounces, 128u);  // 0.95^128 of the light is left then, at most
 PFVOX_CONSTANT(uint, kMaxGlassSteps, 64u);   // bodies of glass that a path goes through or is reflected by
-PFVOX_CONSTANT(float, kRayOffsetVoxels, 0.01f);
 
 // LightSampling
 PFVOX_CONSTANT(uint, kSampleCombined, 0u);
@@ -67,12 +66,12 @@ PFVOX_OFFSET(BakeScene, sunDirection, 32);
 
 // What a texel of the traced depth map sees.
 PFVOX_STRUCT(SeenTexel) {
-    vec3 normal;   // world, unit length
+    vec3 lift;     // from the surface to where its rays start, metres
     float metres;  // along the texel's direction, < 0 = nothing
     vec3 direct;   // radiance that leaves towards the probe without indirect light; of a miss, the sky's
     uint word;     // of ProbeLayer::DepthNormal
     vec3 albedo;
-    float offset;  // metres that a ray from here starts off the surface
+    uint normal;   // octahedral, two snorm16
 };
 PFVOX_SIZE(SeenTexel, 48);
 

@@ -21,6 +21,7 @@ PFVOX_CONSTANT(uint, kBvhStackSize, 40u);       // the builder never makes a dee
 PFVOX_CONSTANT(uint, kMaxWideLevels, 11u);      // two bits each: what a float mantissa can spell
 PFVOX_CONSTANT(uint, kMaxTraceSteps, 1u << 16);  // for one ray in one instance; such rays are counted
 PFVOX_CONSTANT(uint, kNoInstance, 0xffffffffu);
+PFVOX_CONSTANT(float, kRayOffsetVoxels, 0.01f);  // how far rays start off the surface that they leave
 PFVOX_CONSTANT(uint, kFaceInside, 6u);          // the ray starts in the voxel; faces 0..5 = -x +x -y +y -z +z
 
 // WideNode::kind, bits 0 and 1. All but inner ones have leaves for cells.

@@ -73,10 +73,10 @@ PFVOX_STRUCT(SeenPixel) {
     uint material;
     uint normal;     // octahedral, two snorm16
     uint lodColor;   // sRGB of a level of detail; 0 = the material's
-    float voxelMetres;
+    float cellMetres;  // extent along the normal of what was hit: a voxel or a level of detail
     uint sun;        // share of the sun that arrives, R11G11B10F
     uint through;    // share that glass in front lets through, R11G11B10F
-    uint reserved0;
+    uint lift;       // from the surface to where its rays start: parts of two ray offsets, snorm8 each
 };
 PFVOX_SIZE(SeenPixel, 32);
 
@@ -86,8 +86,8 @@ PFVOX_STRUCT(SeenShine) {
     float distance;     // of the glass; 1e30 = none
     uint material;
     uint normal;        // as in SeenPixel
-    float voxelMetres;
-    uint reserved0;
+    float cellMetres;
+    uint lift;          // as in SeenPixel
 };
 PFVOX_SIZE(SeenShine, 32);
 

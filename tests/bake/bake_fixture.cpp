@@ -1,6 +1,9 @@
 #include "bake_fixture.hpp"
 
 #include <cmath>
+#include <glm/packing.hpp>
+
+#include "shared/probe_maths.glsl.h"
 
 namespace pfvox::test {
 
@@ -82,6 +85,8 @@ LitProbe BakeTest::lightAt(const LoadedScene& scene, const glm::vec3& position, 
         PFVOX_TRY(bake::TracedProbe, traced, tracer.collect(0));
         PFVOX_TRY(const std::uint64_t, capped, tracer.cappedRays());
         EXPECT_EQ(capped, 0u);
+        for (const shared::SeenTexel& texel : seen)
+            probe.normals.push_back(shared::octDecode(glm::unpackSnorm2x16(texel.normal)));
         probe.seen = std::move(seen);
         probe.light = std::move(traced.light);
         probe.errors.assign(traced.errors.begin(), traced.errors.end());

@@ -25,6 +25,7 @@ VoxelModel hollowBox(const glm::ivec3& inner, int wall = 1);
 /// What one probe gave.
 struct LitProbe {
     std::vector<shared::SeenTexel> seen;
+    std::vector<glm::vec3> normals;   ///< of `seen`, unit length
     std::vector<glm::vec3> light;     ///< at the same edge as `seen`
     std::vector<double> errors;       ///< standard error of each texel's mean channel
     double meanError = 0.0;

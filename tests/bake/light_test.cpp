@@ -28,7 +28,7 @@ double areaOf(const LitProbe& probe, std::size_t i, std::uint32_t edge) {
     const auto y = static_cast<std::uint32_t>(i) / edge;
     const glm::vec3 d = directionOfTexel(x, y, edge);
     const double metres = static_cast<double>(probe.seen[i].metres);
-    const double cosine = std::abs(static_cast<double>(glm::dot(d, probe.seen[i].normal)));
+    const double cosine = std::abs(static_cast<double>(glm::dot(d, probe.normals[i])));
     return static_cast<double>(texelSolidAngle(x, y, edge)) * metres * metres / cosine;
 }
 
@@ -161,7 +161,7 @@ TEST_F(LightTest, AWallHidesHalfTheSky) {
     double nearest = 10.0;
     double lightThere = 0.0;
     for (std::size_t i = 0; i < probe.light.size(); ++i) {
-        if (probe.seen[i].metres < 0.0f || probe.seen[i].normal.y < 0.9f) continue;
+        if (probe.seen[i].metres < 0.0f || probe.normals[i].y < 0.9f) continue;
         const glm::dvec3 p(pointOf(probe, i, kEdge, position));
         if (p.x > 1.5 || std::abs(p.z - 3.0) > 1.5) continue;
         found += static_cast<double>(probe.light[i].x);
@@ -193,7 +193,7 @@ double meanOnPatch(const LoadedScene& scene, const Patches& patches, const LitPr
     const glm::vec3 low = 0.1f * glm::vec3(patches.receiver.min) - 1e-3f;
     const glm::vec3 high = 0.1f * glm::vec3(patches.receiver.max) + 1e-3f;
     for (std::size_t i = 0; i < probe.light.size(); ++i) {
-        if (probe.seen[i].metres < 0.0f || glm::dot(probe.seen[i].normal, patches.normal) < 0.9f) continue;
+        if (probe.seen[i].metres < 0.0f || glm::dot(probe.normals[i], patches.normal) < 0.9f) continue;
         const glm::vec3 p = pointOf(probe, i, edge, patches.probe);
         if (glm::any(glm::lessThan(p, low)) || glm::any(glm::greaterThan(p, high))) continue;
         sum += areaOf(probe, i, edge) * static_cast<double>(probe.light[i].x);
@@ -316,7 +316,7 @@ TEST_F(LightTest, AgreesWithTheReference) {
     for (std::size_t i = 5; i < probe.light.size() && compared < 6; i += 19) {
         if (probe.seen[i].metres < 0.0f) continue;
         ++compared;
-        const glm::dvec3 normal(probe.seen[i].normal);
+        const glm::dvec3 normal(probe.normals[i]);
         const ReferenceLight expected =
             referenceLight(scene, glm::dvec3(pointOf(probe, i, 16, position)), normal, 20000, 3);
         const double sigma = std::hypot(expected.error, probe.errors[i]);

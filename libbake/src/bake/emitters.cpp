@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "bake/exposed_faces.hpp"
+#include "shared/scene.glsl.h"
 
 namespace pfvox::bake {
 
@@ -18,7 +19,8 @@ double meanOf(const glm::dvec3& c) {
     return (c.x + c.y + c.z) / 3.0;
 }
 
-shared::EmitterFace faceInWorld(const PlacedModel& placed, const VoxelFace& face, const glm::dvec3& radiance) {
+shared::EmitterFace faceInWorld(const PlacedModel& placed, const VoxelFace& face,
+                                const glm::dvec3& radiance) {
     const glm::dmat3 linear(placed.worldFromModel);
     const int axis = face.axis();
     glm::dvec3 corner(face.voxel);
@@ -33,7 +35,8 @@ shared::EmitterFace faceInWorld(const PlacedModel& placed, const VoxelFace& face
             .edgeU = glm::vec3(u),
             .alias = 0,
             .edgeV = glm::vec3(v),
-            .offset = static_cast<float>(static_cast<double>(shared::kRayOffsetVoxels) * std::abs(determinant) / area),
+            .offset = static_cast<float>(static_cast<double>(shared::kRayOffsetVoxels) *
+                                         std::abs(determinant) / area),
             .radiance = glm::vec3(radiance),
             .reserved = 0.0f};
 }
