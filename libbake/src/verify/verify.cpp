@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <pfvox/assert.hpp>
 #include <pfvox/verify.hpp>
 #include <pfvox_shaders/shaders.hpp>
 
