@@ -12,7 +12,8 @@ SeenTexel seen(BakeWave wave, BakeScene bake, vec3 probe, vec3 direction, inout 
     Hit hit = castRay(scene, ray, counts);
     if (hit.instance == kNoInstance)
         return SeenTexel(vec3(0.0), -1.0, skyRadiance(bake, direction), kDepthMiss, vec3(0.0), 0u);
-    Surface surface = surfaceOf(scene, ray, hit);
+    // A texel stands for all that it covers: where that is more than the foot of a lamp, light right there says little of it.
+    Surface surface = surfaceOf(scene, ray, hit, 0.5 * texelAngle(wave.depthEdge) * hit.t);
     MaterialRecord material = materialOf(scene, surface);
     SeenTexel texel;
     texel.lift = surface.lift;

@@ -461,23 +461,25 @@ float rayOffset(float voxelMetres, vec3 position) {
     return max(kRayOffsetVoxels * voxelMetres, 4e-7 * maxOf(abs(position)));
 }
 
-// Along the normal, and off the sides of the face where these are as near: in an inner edge a point that rounding has put
-// a hair beyond the side lies within the solid voxel there, and all that starts in it is dark.
-vec3 liftOf(InstanceRecord instance, CubeHit found, float voxelEdge, vec3 normal, float offset) {
+// Along the normal, and off the sides of the voxel's face as far as `margin`: in an inner edge a point that rounding has
+// put a hair beyond the side lies within the solid voxel there, and all that starts in it is dark.
+vec3 liftOf(InstanceRecord instance, CubeHit found, float voxelEdge, vec3 normal, float offset, float margin) {
     vec3 lift = offset * normal;
     if (found.face == kFaceInside) return lift;
     for (uint i = 1u; i < 3u; ++i) {
         uint axis = (found.axis + i) % 3u;
         vec3 row = cubeRow(instance, axis);
         float perLength = inversesqrt(dot(row, row));
-        float below = found.within[axis] * voxelEdge * perLength;  // metres to the lower side
-        float above = voxelEdge * perLength - below;
-        if (min(below, above) < offset) lift += (below < above ? offset : -offset) * perLength * row;
+        float extent = voxelEdge * perLength;
+        float at = found.within[axis] * extent;  // metres from the lower side
+        float limit = min(margin, 0.5 * extent);
+        lift += (clamp(at, limit, extent - limit) - at) * perLength * row;
     }
     return lift;
 }
 
-Surface surfaceOf(Scene sceneBuffer, Ray ray, Hit hit) {
+// Rays start `sideMargin` metres off the sides of the face at least, and never nearer than they start off the face.
+Surface surfaceOf(Scene sceneBuffer, Ray ray, Hit hit, float sideMargin) {
     SceneHeader scene = sceneBuffer.header;
     InstanceRecord instance = Instances(scene.instances).at[hit.instance];
     ModelRecord model = Models(scene.models).at[instance.model];
@@ -492,8 +494,8 @@ Surface surfaceOf(Scene sceneBuffer, Ray ray, Hit hit) {
     surface.normal = (found.positive ? -perLength : perLength) * row;
     surface.voxelMetres = edgeOf(int(model.leafScale)) * perLength;
     surface.position = ray.origin + hit.t * ray.direction;
-    surface.lift = liftOf(instance, found, edgeOf(int(model.leafScale)), surface.normal,
-                          rayOffset(surface.voxelMetres, surface.position));
+    float offset = rayOffset(surface.voxelMetres, surface.position);
+    surface.lift = liftOf(instance, found, edgeOf(int(model.leafScale)), surface.normal, offset, max(offset, sideMargin));
     surface.leafLog2 = hit.scale - int(model.leafScale);
     surface.lodColor = 0u;
     WideNode node = WideNodes(model.nodes).at[hit.node];
@@ -508,6 +510,8 @@ Surface surfaceOf(Scene sceneBuffer, Ray ray, Hit hit) {
     surface.material = voxelMaterial(model, node, cellAt(uvec3(found.leafMin), 0));
     return surface;
 }
+
+Surface surfaceOf(Scene scene, Ray ray, Hit hit) { return surfaceOf(scene, ray, hit, 0.0); }
 
 // Material of a leaf that is cell `cell` of this node, kNoMaterial when that is empty or no leaf.
 uint leafMaterial(ModelRecord model, WideNode node, uint cell) {

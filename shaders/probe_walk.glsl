@@ -8,14 +8,17 @@
 // of the segment. Texels are visited one by one along that line (Amanatides and Woo 1987), those of the min map first and
 // those below one only where its nearest surface is nearer than the ray. A walk never turns back, so it ends.
 //
-// A miss is certain: the probe has seen past all of the ray. A hit is right up to the thickness that surfaces are given.
-// Unknown: the ray goes behind what the probe sees.
+// A miss is certain: the probe has seen past all of the ray. A hit: the ray crosses, from its front, the plane that a texel
+// shows, and the probe sees that plane where it is crossed. Unknown: the ray goes behind what the probe sees, by way of what
+// it does not see (docs/decisions/031-field-crossing.md).
 #ifndef PFVOX_PROBE_WALK_GLSL
 #define PFVOX_PROBE_WALK_GLSL
 
 #include "probe_field.glsl"
 
 const float kDegenerateVoxels = 0.03;  // shorter pieces of a ray are left out
+const float kSamePlaneVoxels = 0.25;   // how far two texels' surfaces may lie apart and be one plane
+const float kSamePlaneShare = 1e-3;    // of the distance to the plane: depth codes are no finer
 
 struct FieldHit {
     uint state;   // kField...
@@ -127,6 +130,42 @@ uint minCodeAt(ProbeEntry probe, ivec2 texel, uint edge) {
     return ProbeWords(probe.minDepth).at[index >> 1] >> ((index & 1u) * 16u) & 0xffffu;
 }
 
+// What a texel shows, taken for a plane. Heights are along its normal.
+struct SeenPlane {
+    vec3 normal;
+    float height;  // from the probe
+};
+
+float heightAbove(SeenPlane plane, FieldSegment segment, float t) {
+    return dot(segment.origin + t * segment.direction, plane.normal) - plane.height;
+}
+
+float planeSlack(ProbeFieldRecord field, SeenPlane plane) {
+    return max(kSamePlaneVoxels * field.voxelMetres, kSamePlaneShare * abs(plane.height));
+}
+
+bool showsPlane(ProbeFieldRecord field, ProbeEntry probe, SeenPlane plane, ivec2 texel) {
+    uint word = ProbeWords(probe.depthNormal).at[uint(texel.x) + field.depthEdge * uint(texel.y)];
+    if (isMiss(word) || dot(normalOf(word), plane.normal) <= kSurfaceMinNormalDot) return false;
+    vec3 view = directionOfTexel(uint(texel.x), uint(texel.y), field.depthEdge);
+    float height = metresOfCode(field, depthCodeOf(word)) * dot(view, plane.normal);
+    return abs(height - plane.height) < planeSlack(field, plane);
+}
+
+// Whether the probe sees a plane at a point of it (relative to the probe): by four texels, as the proximity grid asks.
+bool seesPlaneAt(ProbeFieldRecord field, ProbeEntry probe, SeenPlane plane, vec3 point) {
+    vec2 at = texelCoordinate(point, field.depthEdge) - 0.5;
+    ivec2 low = ivec2(floor(at));
+    vec2 fraction = at - vec2(low);
+    float agreeing = 0.0;
+    for (int i = 0; i < 4; ++i) {
+        ivec2 offset = ivec2(i & 1, i >> 1);
+        vec2 near = mix(1.0 - fraction, fraction, vec2(offset));
+        if (showsPlane(field, probe, plane, wrappedTexel(low + offset, field.depthEdge))) agreeing += near.x * near.y;
+    }
+    return agreeing >= kSurfaceMinAgreement;
+}
+
 // The texels between two places of a line. A miss is one of this piece only.
 uint traceTexels(ProbeFieldRecord field, ProbeEntry probe, FieldSegment segment, vec2 span, inout float tMin,
                  inout FieldHit hit, inout FieldStatistics statistics) {
@@ -143,22 +182,23 @@ uint traceTexels(ProbeFieldRecord field, ProbeEntry probe, FieldSegment segment,
         uint word = ProbeWords(probe.depthNormal).at[index];
         float depth = metresOfCode(field, depthCodeOf(word));
         if (max(before, after) >= depth) {
-            vec3 normal = normalOf(word);
             vec3 view = directionOfTexel(uint(walk.texel.x), uint(walk.texel.y), edge);
-            float along = dot(depth * view - segment.origin, segment.direction);
-            float thickness = field.thickness + surfaceTolerance(depth, dot(view, normal), edge);
-            if (min(before, after) < depth + thickness && dot(normal, segment.direction) < 0.0) {
-                // Where the ray meets the plane that the texel shows, but not far from the texel.
-                float onPlane = dot(depth * view - segment.origin, normal) / dot(segment.direction, normal);
-                along = clamp(onPlane, min(tBefore, along - thickness), max(tAfter, along + thickness));
-                hit.state = kFieldHit;
-                hit.t = max(along, 0.0);
-                hit.normal = normal;
-                hit.texel = index;
-                return kFieldHit;
+            SeenPlane plane = SeenPlane(normalOf(word), depth * dot(view, normalOf(word)));
+            float pace = dot(segment.direction, plane.normal);
+            // Behind the middle of the texel and still before its plane: the ray is free.
+            if (pace >= 0.0 || heightAbove(plane, segment, tAfter) <= 0.0) {
+                float crossing = -heightAbove(plane, segment, 0.0) / pace;
+                bool fromFront = pace < 0.0 && heightAbove(plane, segment, tMin) >= -planeSlack(field, plane);
+                if (fromFront && seesPlaneAt(field, probe, plane, segment.origin + crossing * segment.direction)) {
+                    hit.state = kFieldHit;
+                    hit.t = max(crossing, 0.0);
+                    hit.normal = plane.normal;
+                    hit.texel = index;
+                    return kFieldHit;
+                }
+                tMin = max(tMin, tBefore);
+                return kFieldUnknown;
             }
-            tMin = max(tMin, min(along, tBefore));
-            return kFieldUnknown;
         }
         if (exit >= span.y) return kFieldMiss;
         stepTexel(walk, exit, edge);

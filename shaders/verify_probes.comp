@@ -40,8 +40,9 @@ void main() {
     if (hit.instance == kNoInstance) return;
     Surface surface = surfaceOf(scene, ray, hit);
     vec3 origin = startOf(surface);
-    vec4 even = vec4(0.0);
-    vec4 odd = vec4(0.0);
+    // On from what is there: the sums do not depend on how samples are cut into dispatches.
+    vec4 even = Pixels(push.pixels).at[index].even;
+    vec4 odd = Pixels(push.pixels).at[index].odd;
     for (uint i = 0u; i < push.sampleCount; ++i) {
         uint number = push.firstSample + i;
         vec2 first = firstPair(index, number);
@@ -50,6 +51,6 @@ void main() {
         if ((number & 1u) == 0u) even += light;
         else odd += light;
     }
-    Pixels(push.pixels).at[index].even += even;
-    Pixels(push.pixels).at[index].odd += odd;
+    Pixels(push.pixels).at[index].even = even;
+    Pixels(push.pixels).at[index].odd = odd;
 }

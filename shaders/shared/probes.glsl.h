@@ -47,14 +47,14 @@ PFVOX_STRUCT(ProbeFieldRecord) {
     vec2 depthScaleAndLogRange;
     uvec2 probes;
     uvec2 cells;
-    float thickness;      // of surfaces, for light-field tracing
     float farMetres;
+    uint reserved0;
 };
 PFVOX_SIZE(ProbeFieldRecord, 128);
 PFVOX_OFFSET(ProbeFieldRecord, counts, 32);
 PFVOX_OFFSET(ProbeFieldRecord, cellCounts, 80);
 PFVOX_OFFSET(ProbeFieldRecord, depthScaleAndLogRange, 96);
-PFVOX_OFFSET(ProbeFieldRecord, thickness, 120);
+PFVOX_OFFSET(ProbeFieldRecord, farMetres, 120);
 
 // ---- Which step of the lookup gave a value ----
 

@@ -1,4 +1,5 @@
-// The reference that probes are held against, without probes: emitters found by looking for them and by running into them.
+// The reference that probes are held against, without probes: emitters found by looking for them and by
+// running into them.
 #include <cmath>
 #include <iostream>
 #include <pfvox/probe_file.hpp>
@@ -23,7 +24,8 @@ class VerifyReference : public BakeTest {
         const auto light = traced(scene, camera, settings);
         EXPECT_TRUE(light) << describe(light.error());
         if (!light) return {};
-        std::cout << "  " << light->mean << " +- " << light->error << ", noise of a pixel " << light->noise << "\n";
+        std::cout << "  " << light->mean << " +- " << light->error << ", noise of a pixel " << light->noise
+                  << "\n";
         return *light;
     }
 
@@ -31,18 +33,32 @@ class VerifyReference : public BakeTest {
         EXPECT_NEAR(a.mean, b.mean, 3.5 * std::hypot(a.error, b.error));
     }
 
-  private:
-    Result<Light> traced(const LoadedScene& scene, const Camera& camera, const VerifySettings& settings) {
+    /// Calls `body` with a verifier and what it looks at.
+    template <class Body>
+    Result<void> withVerifier(const LoadedScene& scene, const Camera& camera, const Body& body) {
         BakeObserver observer;
         BakeSettings coarse = plain(16, 16);
         coarse.force = true;
         PFVOX_CHECK(bakeProbes(device(), scene, coarse, folder_ / "one.pf_probe", observer, diagnostics));
-        PFVOX_TRY(const ProbeFileReader, reader, ProbeFileReader::open(folder_ / "one.pf_probe", Limits{}, diagnostics));
+        PFVOX_TRY(const ProbeFileReader, reader,
+                  ProbeFileReader::open(folder_ / "one.pf_probe", Limits{}, diagnostics));
         PFVOX_TRY(const gpu::Scene, gpuScene, gpu::Scene::build(device(), gpu::partsOf(scene), diagnostics));
-        PFVOX_TRY(const gpu::GpuProbes, probes, gpu::GpuProbes::upload(device(), reader, {.voxelMetres = 0.1f}));
+        PFVOX_TRY(const gpu::GpuProbes, probes,
+                  gpu::GpuProbes::upload(device(), reader, {.voxelMetres = 0.1f}));
         PFVOX_TRY(const ProbeVerifier, verifier, ProbeVerifier::create(device()));
-        PFVOX_TRY(const VerifiedPicture, picture, verifier.render(device(), {scene, gpuScene, probes, camera}, settings));
-        return lightOf(picture);
+        return body(verifier, VerifyInput{scene, gpuScene, probes, camera});
+    }
+
+  private:
+    Result<Light> traced(const LoadedScene& scene, const Camera& camera, const VerifySettings& settings) {
+        std::optional<Light> light;
+        PFVOX_CHECK(withVerifier(
+            scene, camera, [&](const ProbeVerifier& verifier, const VerifyInput& input) -> Result<void> {
+                PFVOX_TRY(const VerifiedPicture, picture, verifier.render(device(), input, settings));
+                light = lightOf(picture);
+                return {};
+            }));
+        return *light;
     }
 
     static Light lightOf(const VerifiedPicture& picture) {
@@ -74,7 +90,8 @@ VerifySettings withoutEmitterSampling(std::uint32_t samples) {
     return settings;
 }
 
-const Camera kCorner{.name = "corner", .position = {0.1, 0.5, 0.1}, .target = {0.9, 0.2, 0.8}, .fovYDegrees = 70.0};
+const Camera kCorner{
+    .name = "corner", .position = {0.1, 0.5, 0.1}, .target = {0.9, 0.2, 0.8}, .fovYDegrees = 70.0};
 
 /// A room of one metre with a lamp of two voxels in its ceiling.
 VoxelModel roomWithLamp() {
@@ -142,11 +159,36 @@ LoadedScene wellScene(int layers) {
 }
 
 TEST_F(VerifyReference, BodiesOfGlassMayBeManyVoxelsThick) {
-    const Camera camera{.name = "floor", .position = {0.05, 0.4, 0.05}, .target = {0.4, 0.0, 0.4}, .fovYDegrees = 60.0};
+    const Camera camera{
+        .name = "floor", .position = {0.05, 0.4, 0.05}, .target = {0.4, 0.0, 0.4}, .fovYDegrees = 60.0};
     const VerifySettings settings{.width = 16, .height = 8, .samples = 128};
     const Light open = lightOf(wellScene(0), camera, settings);
     EXPECT_GT(open.mean, 0.05);
     for (const int layers : {1, 3, 30}) expectEqual(open, lightOf(wellScene(layers), camera, settings));
+}
+
+TEST_F(VerifyReference, GoesOnBitForBitFromWhatWasTraced) {
+    const Camera camera{
+        .name = "floor", .position = {0.05, 0.4, 0.05}, .target = {0.4, 0.0, 0.4}, .fovYDegrees = 60.0};
+    const auto traced = [&](const ProbeVerifier& verifier, const VerifyInput& input) -> Result<void> {
+        VerifySettings settings{.width = 16, .height = 8, .samples = 24};
+        PFVOX_TRY(const ReferencePicture, whole, verifier.trace(device(), input, settings));
+        settings.samples = 7;
+        PFVOX_TRY(ReferencePicture, begun, verifier.trace(device(), input, settings));
+        EXPECT_EQ(begun.samples, 7u);
+        EXPECT_NE(begun.even, whole.even);
+        settings.samples = 24;
+        PFVOX_TRY(ReferencePicture, grown, verifier.trace(device(), input, settings, std::move(begun)));
+        EXPECT_EQ(grown.samples, 24u);
+        EXPECT_EQ(grown.even, whole.even);
+        EXPECT_EQ(grown.odd, whole.odd);
+        settings.samples = 10;
+        PFVOX_TRY(const ReferencePicture, kept, verifier.trace(device(), input, settings, std::move(grown)));
+        EXPECT_EQ(kept.samples, 24u);
+        return {};
+    };
+    const auto done = withVerifier(wellScene(0), camera, traced);
+    ASSERT_TRUE(done) << describe(done.error());
 }
 
 }  // namespace

@@ -255,31 +255,64 @@ TEST_F(ProbeBakeScene, VerifyLooksThroughTheCameras) {
     writeScene("scene.toml", "box.pf_vox",
                std::string(kGrid) + "[[cameras]]\nname = \"front\"\nposition = [0.6, 1.2, 3]\ntarget = [0.6, 0.3, 0.6]\n");
     ASSERT_EQ(run(tiny({"scene.toml", "-o", "out.pf_probe"})).exitCode, 0);
-    const ProcessResult result =
-        run({"verify", "--json", "scene.toml", "out.pf_probe", "--size", "48x32", "--samples", "16", "-o", "pictures"});
+    const auto verify = [&](std::vector<std::string> options) {
+        options.insert(options.begin(), {"verify", "scene.toml", "out.pf_probe", "--size", "48x32"});
+        return run(std::move(options));
+    };
+    const ProcessResult result = verify({"--json", "--samples", "16", "--max-samples", "16", "-o", "pictures"});
     ASSERT_EQ(result.exitCode, 0) << result.err;
     const json score = json::parse(result.out);
     expectSchema("verify", score);
     EXPECT_GT(score["surfacePixels"], 100);
     EXPECT_EQ(score["withoutValue"], 0);
+    EXPECT_LE(score["all"]["relativeTrimmedRmse"], score["all"]["relativeRmse"]);
+    EXPECT_EQ(score["reference"]["samples"], 16);
     for (const char* name : {"front-probes.png", "front-reference.png", "front-flip.png", "front-tiers.png"})
         EXPECT_TRUE(std::filesystem::exists(folder / "pictures" / name)) << name;
-    EXPECT_EQ(run({"verify", "scene.toml", "out.pf_probe", "--size", "48x32", "--samples", "2", "--max-flip", "0"}).exitCode, 1);
-    EXPECT_EQ(run({"verify", "scene.toml", "out.pf_probe", "--camera", "absent"}).exitCode, 4);
-
-    // A reference that is kept gives the same figures, and one of other samples or of another scene is not taken for it.
-    const std::vector<std::string> kept{"verify", "--json", "scene.toml", "out.pf_probe", "--size", "48x32", "--samples", "16",
-                                        "--references", "kept"};
-    const json first = json::parse(run(kept).out);
-    const json second = json::parse(run(kept).out);
-    EXPECT_EQ(first["all"], score["all"]);
-    EXPECT_EQ(second["all"], score["all"]);
-    EXPECT_EQ(readTree(folder / "kept").size(), 1u);
-    ASSERT_EQ(run({"verify", "scene.toml", "out.pf_probe", "--size", "48x32", "--samples", "8", "--references", "kept"}).exitCode, 0);
-    EXPECT_EQ(readTree(folder / "kept").size(), 2u);
-    for (const auto& [name, bytes] : readTree(folder / "kept")) writeText(folder / "kept" / name, "damaged" + bytes);
-    EXPECT_EQ(json::parse(run(kept).out)["all"], score["all"]);
+    EXPECT_EQ(verify({"--samples", "2", "--max-samples", "2", "--max-flip", "0"}).exitCode, 1);
+    EXPECT_EQ(verify({"--camera", "absent"}).exitCode, 4);
     EXPECT_EQ(run({"verify", "scene.toml", "out.pf_probe", "--size", "48"}).exitCode, 2);
+    EXPECT_EQ(verify({"--reference-noise", "-1"}).exitCode, 2);
+    EXPECT_EQ(verify({"--max-samples", "1"}).exitCode, 2);
+}
+
+/// A reference that is too noisy for what it judges gets more paths, and where it may not, the figures say so.
+TEST_F(ProbeBakeScene, VerifyGoesOnUntilTheReferenceIsGoodEnough) {
+    writeScene("scene.toml", "box.pf_vox",
+               std::string(kGrid) + "[[cameras]]\nname = \"front\"\nposition = [0.6, 1.2, 3]\ntarget = [0.6, 0.3, 0.6]\n");
+    ASSERT_EQ(run(tiny({"scene.toml", "-o", "out.pf_probe"})).exitCode, 0);
+    const auto verify = [&](std::vector<std::string> options) {
+        options.insert(options.begin(), {"verify", "scene.toml", "out.pf_probe", "--size", "48x32"});
+        return run(std::move(options));
+    };
+    const auto scoreOf = [&](std::vector<std::string> options) {
+        options.insert(options.end(), {"--json"});
+        const ProcessResult result = verify(std::move(options));
+        EXPECT_EQ(result.exitCode, 0) << result.err;
+        const json score = json::parse(result.out);
+        expectSchema("verify", score);
+        return score;
+    };
+    // No noise at all cannot be reached.
+    const json capped = scoreOf({"--samples", "4", "--reference-noise", "0"});
+    EXPECT_EQ(capped["reference"]["samples"], 64);
+    EXPECT_EQ(capped["reference"]["isCertain"], false);
+    EXPECT_THAT(capped["reference"]["message"].get<std::string>(), HasSubstr("figures are uncertain; raise --max-samples"));
+    EXPECT_THAT(verify({"--samples", "4", "--reference-noise", "0"}).out, HasSubstr("front: reference noise"));
+    const json reached = scoreOf({"--samples", "2", "--max-samples", "4096"});
+    EXPECT_EQ(reached["reference"]["isCertain"], true);
+    EXPECT_GT(reached["reference"]["samples"], 2);
+    EXPECT_LE(reached["all"]["relativeNoise"], 0.33 * reached["all"]["relativeError"].get<double>());
+
+    // What is kept is taken on from where it ended, and one with more paths serves as it is.
+    const std::vector<std::string> few{"--samples", "16", "--max-samples", "16", "--references", "kept"};
+    const std::vector<std::string> more{"--samples", "64", "--max-samples", "64", "--references", "kept"};
+    EXPECT_EQ(scoreOf(few)["reference"]["samples"], 16);
+    EXPECT_EQ(scoreOf(more)["all"], capped["all"]);
+    EXPECT_EQ(scoreOf(few)["all"], capped["all"]);
+    EXPECT_EQ(readTree(folder / "kept").size(), 1u);
+    for (const auto& [name, bytes] : readTree(folder / "kept")) writeText(folder / "kept" / name, "damaged" + bytes);
+    EXPECT_EQ(scoreOf(more)["all"], capped["all"]);
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-// BoxRoom: a closed room with boxes in it, traced analytically: what probe layers and the proximity grid are tested on.
+// BoxRoom: a closed room with boxes in it, traced analytically: what probe layers and the proximity grid are
+// tested on.
 #pragma once
 
 #include <pfvox/probe_maths.hpp>
@@ -30,12 +31,21 @@ class BoxRoom {
         std::mt19937 random(seed);
         std::uniform_real_distribution<float> uniform;
         for (int i = 0; i < boxes; ++i) {
-            const glm::vec3 extent = 0.3f + 1.5f * glm::vec3{uniform(random), uniform(random), uniform(random)};
+            const glm::vec3 extent =
+                0.3f + 1.5f * glm::vec3{uniform(random), uniform(random), uniform(random)};
             glm::vec3 low = (size_ - extent) * glm::vec3{uniform(random), uniform(random), uniform(random)};
             if (i % 2 == 0) low.y = 0;
             const auto snap = [](glm::vec3 p) { return glm::round(p / kVoxelMetres) * kVoxelMetres; };
             boxes_.push_back({snap(low), snap(low + extent)});
         }
+    }
+
+    /// Nothing but what is added, and a ray may end nowhere. `size`: what makeRoomField fills with probes.
+    static BoxRoom underSky(glm::vec3 size) {
+        BoxRoom room(0);
+        room.size_ = size;
+        room.hasWalls_ = false;
+        return room;
     }
 
     void add(const Box& box) { boxes_.push_back(box); }
@@ -45,17 +55,19 @@ class BoxRoom {
     bool isSolid(glm::vec3 p) const {
         for (const Box& box : boxes_)
             if (glm::all(glm::greaterThan(p, box.min)) && glm::all(glm::lessThan(p, box.max))) return true;
+        if (!hasWalls_) return false;
         return glm::any(glm::lessThan(p, glm::vec3{0})) || glm::any(glm::greaterThan(p, size_));
     }
 
     RoomHit trace(glm::vec3 origin, glm::vec3 direction) const {
         RoomHit hit;
-        for (int axis = 0; axis < 3; ++axis) {
+        for (int axis = 0; axis < 3 && hasWalls_; ++axis) {
             if (direction[axis] == 0) continue;
             const float wall = direction[axis] > 0 ? size_[axis] : 0;
             keep(hit, (wall - origin[axis]) / direction[axis], axis, direction, 0);
         }
-        for (std::size_t i = 0; i < boxes_.size(); ++i) traceBox(hit, static_cast<int>(i) + 1, origin, direction);
+        for (std::size_t i = 0; i < boxes_.size(); ++i)
+            traceBox(hit, static_cast<int>(i) + 1, origin, direction);
         return hit;
     }
 
@@ -87,6 +99,7 @@ class BoxRoom {
     }
 
     glm::vec3 size_;
+    bool hasWalls_ = true;
     std::vector<Box> boxes_;
 };
 
@@ -98,7 +111,8 @@ inline std::vector<std::uint32_t> traceDepthNormal(const BoxRoom& room, glm::vec
     for (std::uint32_t y = 0; y < edge; ++y)
         for (std::uint32_t x = 0; x < edge; ++x) {
             const RoomHit hit = room.trace(probe, directionOfTexel(x, y, edge));
-            words.push_back(packDepthNormal(coder.encode(hit.distance), hit.normal));
+            const bool sees = std::isfinite(hit.distance);
+            words.push_back(sees ? packDepthNormal(coder.encode(hit.distance), hit.normal) : kDepthMissCode);
         }
     return words;
 }

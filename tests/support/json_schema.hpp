@@ -1,5 +1,5 @@
 // A checker for the part of JSON Schema that docs/schema/ uses: type, enum, required, properties,
-// additionalProperties, items.
+// additionalProperties, items, and $ref to $defs of the same file.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -12,13 +12,20 @@ class SchemaChecker {
   public:
     /// Everything about `value` that breaks the schema, with its place; empty = valid.
     static std::vector<std::string> check(const nlohmann::json& schema, const nlohmann::json& value) {
-        SchemaChecker checker;
+        SchemaChecker checker(schema);
         checker.visit(schema, value, "$");
         return checker.complaints_;
     }
 
   private:
+    explicit SchemaChecker(const nlohmann::json& root) : root_(root) {}
+
     void visit(const nlohmann::json& schema, const nlohmann::json& value, const std::string& place) {
+        if (schema.contains("$ref")) {
+            const auto target = schema["$ref"].get<std::string>().substr(1);  // behind the #
+            visit(root_.at(nlohmann::json::json_pointer(target)), value, place);
+            return;
+        }
         if (schema.contains("type") && !hasType(schema["type"], value)) {
             complaints_.push_back(place + " is not of type " + schema["type"].dump());
             return;
@@ -65,6 +72,7 @@ class SchemaChecker {
         return type == "null" && value.is_null();
     }
 
+    const nlohmann::json& root_;
     std::vector<std::string> complaints_;
 };
 

@@ -1,9 +1,9 @@
-// Reference store: path-traced pictures kept in a folder, so that several fields of one scene are held against the same
-// ones and none is traced twice. A text line says what a picture shows; one that says anything else is traced anew.
+// Reference store: path-traced pictures kept in a folder, so that several fields of one scene are held
+// against the same ones and no path is traced twice. A text line says what a picture shows; one that says
+// anything else is left aside.
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <pfvox/verify.hpp>
 
 namespace pfvox::tools {
@@ -13,11 +13,17 @@ class ReferenceStore {
     /// `scene`: hash of the scene as its probes were baked. Without a folder nothing is kept.
     ReferenceStore(std::filesystem::path folder, const ContentKey& scene);
 
-    /// The picture from the folder, or what `trace` gives, which is then kept. Errors: those of `trace`, FileNotWritable.
-    Result<ReferencePicture> fetch(const Camera& camera, const VerifySettings& settings,
-                                   const std::function<Result<ReferencePicture>()>& trace) const;
+    /// The picture that was kept last, with as many paths as it has; an empty one (`samples` 0) without any
+    /// that fits.
+    ReferencePicture find(const Camera& camera, const VerifySettings& settings) const;
+
+    /// Instead of what was kept before. Errors: FileNotWritable.
+    Result<void> keep(const Camera& camera, const VerifySettings& settings,
+                      const ReferencePicture& picture) const;
 
   private:
+    std::filesystem::path fileOf(const Camera& camera, const VerifySettings& settings) const;
+
     std::filesystem::path folder_;
     std::string scene_;
 };

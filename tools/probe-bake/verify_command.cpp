@@ -1,8 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -10,11 +8,9 @@
 #include <pfvox/verify.hpp>
 
 #include "common/json.hpp"
-#include "common/table.hpp"
 #include "common/text.hpp"
 #include "probe-bake/bake_options.hpp"
 #include "probe-bake/commands.hpp"
-#include "probe-bake/picture_file.hpp"
 #include "probe-bake/reference_store.hpp"
 #include "probe-bake/verify_report.hpp"
 
@@ -23,6 +19,8 @@ namespace pfvox::tools {
 namespace {
 
 constexpr const char* kVerifying = "Verifying";
+constexpr std::uint32_t kMostSamples = 1u << 20;
+constexpr std::uint32_t kSamplesGrowth = 16;  // --max-samples over --samples, when it is not given
 
 struct VerifyOptions {
     CommonOptions common;
@@ -30,6 +28,8 @@ struct VerifyOptions {
     std::vector<std::string> cameras;
     std::string size = "320x180";
     std::uint32_t samples = VerifySettings{}.samples;
+    std::optional<std::uint32_t> maxSamples;
+    double referenceNoisePercent = 100.0 * ReferenceTarget{}.noiseOfError;
     std::string references;
     std::string output;
     std::string device;
@@ -39,13 +39,15 @@ struct VerifyOptions {
 };
 
 HelpText helpText() {
-    return {.summary = "Renders the indirect light of a scene from its probes and by path tracing, and tells how far both "
-                       "are apart.",
-            .usage = {"probe-bake verify [options] <scene.toml | file.pf_vox> <file.pf_probe>"},
-            .examples = {{"probe-bake verify scene.toml scene.pf_probe", "all cameras of the scene"},
-                         {"probe-bake verify scene.toml scene.pf_probe --camera room --samples 1024 -o pictures",
-                          "one of them, with pictures"},
-                         {"probe-bake verify scene.toml scene.pf_probe --max-rmse 8", "fails when it is worse"}}};
+    return {
+        .summary =
+            "Renders the indirect light of a scene from its probes and by path tracing, and tells how far "
+            "both are apart.",
+        .usage = {"probe-bake verify [options] <scene.toml | file.pf_vox> <file.pf_probe>"},
+        .examples = {{"probe-bake verify scene.toml scene.pf_probe", "all cameras of the scene"},
+                     {"probe-bake verify scene.toml scene.pf_probe --camera room --samples 1024 -o pictures",
+                      "one of them, with pictures"},
+                     {"probe-bake verify scene.toml scene.pf_probe --max-rmse 8", "fails when it is worse"}}};
 }
 
 std::optional<glm::uvec2> parseSize(const std::string& text) {
@@ -74,7 +76,8 @@ Result<std::vector<Camera>> chosenCameras(const VerifyOptions& options, const Lo
         if (found == cameras.end()) {
             std::string names;
             for (const Camera& camera : cameras) names += (names.empty() ? "" : ", ") + camera.name;
-            return fail(ErrorCode::BadReference, fmt::format("there is no camera \"{}\"; there are: {}", name, names));
+            return fail(ErrorCode::BadReference,
+                        fmt::format("there is no camera \"{}\"; there are: {}", name, names));
         }
         chosen.push_back(*found);
     }
@@ -92,30 +95,10 @@ float voxelMetresOf(const LoadedScene& scene) {
     return std::isfinite(smallest) && smallest > 0.0 ? static_cast<float>(smallest) : 0.1f;
 }
 
-Result<void> writePictures(const std::string& folder, const Camera& camera, const VerifiedPicture& picture,
-                           const VerifyScore& score) {
-    constexpr std::array<glm::vec3, gpu::kProbeTierCount> kTierColours{{{1.0f, 0.0f, 1.0f},
-                                                                        {0.20f, 0.62f, 0.24f},
-                                                                        {0.85f, 0.75f, 0.15f},
-                                                                        {0.16f, 0.36f, 0.78f},
-                                                                        {0.80f, 0.18f, 0.12f}}};
-    std::array<std::vector<glm::vec3>, 4> images;
-    for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
-        const VerifiedPixel& pixel = picture.pixels[i];
-        const auto exposure = static_cast<float>(score.exposure);
-        images[0].push_back(exposure * pixel.lookup);
-        images[1].push_back(exposure * pixel.reference);
-        images[2].push_back(pixel.surface ? heatColour(score.flip[i]) : glm::vec3{0.0f});
-        images[3].push_back(pixel.surface ? kTierColours[static_cast<std::size_t>(pixel.tier)] : glm::vec3{0.0f});
-    }
-    constexpr std::array<const char*, 4> kNames{"probes", "reference", "flip", "tiers"};
-    std::string name = camera.name.empty() ? "camera" : camera.name;
-    std::ranges::replace_if(name, [](unsigned char c) { return std::isalnum(c) == 0 && c != '-' && c != '_'; }, '_');
-    for (std::size_t i = 0; i < images.size(); ++i) {
-        const std::filesystem::path file = std::filesystem::path(folder) / fmt::format("{}-{}.png", name, kNames[i]);
-        PFVOX_CHECK(writePicture(file, {picture.width, picture.height}, images[i]));
-    }
-    return {};
+ReferenceTarget targetOf(const VerifyOptions& options) {
+    return {
+        .noiseOfError = options.referenceNoisePercent / 100.0,
+        .maxSamples = options.maxSamples.value_or(std::min(kSamplesGrowth * options.samples, kMostSamples))};
 }
 
 /// One run over all cameras.
@@ -131,7 +114,7 @@ class VerifyRun {
         reporter_.diagnostics(options_.inputs[0], diagnostics.entries());
         return status;
     }
-    std::string text() const { return table_.render(); }
+    std::string text() const { return table_.render() + uncertain_; }
     const std::string& complaint() const { return complaint_; }
     bool withoutValue() const { return withoutValue_; }
 
@@ -139,12 +122,14 @@ class VerifyRun {
     Result<void> runAll(DiagnosticList& diagnostics) {
         PFVOX_TRY(const LoadedScene, loaded, loadScene(options_.inputs[0], limits_, diagnostics));
         PFVOX_TRY(const std::vector<Camera>, cameras, chosenCameras(options_, loaded));
-        PFVOX_TRY(const ProbeFileReader, reader, ProbeFileReader::open(options_.inputs[1], limits_, diagnostics));
+        PFVOX_TRY(const ProbeFileReader, reader,
+                  ProbeFileReader::open(options_.inputs[1], limits_, diagnostics));
         PFVOX_TRY(gpu::Device, device, gpu::Device::open({.selector = options_.device}));
         PFVOX_TRY(const gpu::Scene, scene, gpu::Scene::build(device, gpu::partsOf(loaded), diagnostics));
-        PFVOX_TRY(const gpu::GpuProbes, probes,
-                  gpu::GpuProbes::upload(device, reader,
-                                         {.voxelMetres = voxelMetresOf(loaded), .compactOnly = options_.compact}));
+        PFVOX_TRY(
+            const gpu::GpuProbes, probes,
+            gpu::GpuProbes::upload(device, reader,
+                                   {.voxelMetres = voxelMetresOf(loaded), .compactOnly = options_.compact}));
         PFVOX_TRY(const ProbeVerifier, verifier, ProbeVerifier::create(device));
         const std::uint32_t bounces = reader.info().settings.maxBounces;
         const VerifySettings settings{.width = size_.x,
@@ -153,58 +138,70 @@ class VerifyRun {
                                       .maxBounces = bounces == 0 ? VerifySettings{}.maxBounces : bounces};
         const ReferenceStore store(options_.references, reader.info().sceneHash);
         for (const Camera& camera : cameras) {
-            reporter_.progress(fmt::format("camera {}", camera.name));
             const VerifyInput input{loaded, scene, probes, camera};
-            PFVOX_TRY(const ReferencePicture, reference,
-                      store.fetch(camera, settings, [&] { return verifier.trace(device, input, settings); }));
-            PFVOX_TRY(const VerifiedPicture, picture, verifier.lookUp(device, input, reference));
-            const VerifyScore score = scoreOf(picture);
+            PFVOX_TRY(const CameraVerdict, verdict, judge({device, verifier, store, input}, settings));
             reporter_.clearProgress();
-            report(camera, picture, score);
-            if (!options_.output.empty()) PFVOX_CHECK(writePictures(options_.output, camera, picture, score));
+            report(verdict);
+            if (!options_.output.empty()) PFVOX_CHECK(writePictures(options_.output, verdict));
         }
         return {};
     }
 
-    void report(const Camera& camera, const VerifiedPicture& picture, const VerifyScore& score) {
-        if (options_.common.json) reporter_.jsonLine(jsonText(scoreJson(camera, picture, score)));
-        const auto percent = [](double share) { return fmt::format("{:.2f} %", 100.0 * share); };
-        const auto tier = [&](gpu::ProbeTier t) { return percent(score.tierShares[static_cast<std::size_t>(t)]); };
-        table_.addRow({camera.name, formatCount(score.surfacePixels), formatCount(score.withoutValue),
-                       tier(gpu::ProbeTier::Texels), tier(gpu::ProbeTier::Compact), tier(gpu::ProbeTier::Nearest),
-                       percent(score.all.relativeRmse), percent(score.all.relativeNoise),
-                       percent(score.all.relativeError), percent(score.texels().relativeError),
-                       fmt::format("{:.2f}", score.psnrDecibel), fmt::format("{:.4f}", score.meanFlip),
-                       fmt::format("{:.4f}", score.noiseFlip)});
+    struct Judged {
+        gpu::Device& device;
+        const ProbeVerifier& verifier;
+        const ReferenceStore& store;
+        const VerifyInput& input;
+    };
+
+    /// Adds paths to the reference until it is good enough for the error that it finds, or may have no more.
+    Result<CameraVerdict> judge(const Judged& with, VerifySettings settings) {
+        const Camera& camera = with.input.camera;
+        const ReferenceTarget target = targetOf(options_);
+        settings.samples = std::min(settings.samples, target.maxSamples);
+        ReferencePicture reference = with.store.find(camera, settings);
+        for (;;) {
+            reporter_.progress(
+                fmt::format("camera {}: {} paths a pixel", camera.name, formatCount(settings.samples)));
+            if (reference.samples < settings.samples) {
+                PFVOX_TRY(ReferencePicture, traced,
+                          with.verifier.trace(with.device, with.input, settings, std::move(reference)));
+                PFVOX_CHECK(with.store.keep(camera, settings, traced));
+                reference = std::move(traced);
+            }
+            PFVOX_TRY(VerifiedPicture, picture, with.verifier.lookUp(with.device, with.input, reference));
+            settings.samples = target.nextSamples(partOfAll(picture), reference.samples);
+            if (settings.samples > reference.samples) continue;
+            VerifyScore score = scoreOf(picture);
+            return CameraVerdict{camera, std::move(picture), std::move(score), reference.samples, target};
+        }
+    }
+
+    void report(const CameraVerdict& verdict) {
+        const VerifyScore& score = verdict.score;
+        if (options_.common.json) reporter_.jsonLine(jsonText(verdictJson(verdict)));
+        addRow(table_, verdict);
+        if (const std::string what = uncertaintyOf(verdict); !what.empty())
+            uncertain_ += verdict.camera.name + ": " + what + "\n";
         const auto add = [&](std::string what) {
-            complaint_ += (complaint_.empty() ? "" : "; ") + camera.name + ": " + std::move(what);
+            complaint_ += (complaint_.empty() ? "" : "; ") + verdict.camera.name + ": " + std::move(what);
         };
         if (score.withoutValue != 0) {
             withoutValue_ = true;
             add(plural(score.withoutValue, "pixel") + " without value");
         }
         if (options_.maxRmsePercent && 100.0 * score.all.relativeRmse > *options_.maxRmsePercent)
-            add("RMSE " + percent(score.all.relativeRmse));
-        if (options_.maxFlip && score.meanFlip > *options_.maxFlip) add(fmt::format("FLIP {:.4f}", score.meanFlip));
+            add(fmt::format("RMSE {:.2f} %", 100.0 * score.all.relativeRmse));
+        if (options_.maxFlip && score.meanFlip > *options_.maxFlip)
+            add(fmt::format("FLIP {:.4f}", score.meanFlip));
     }
 
     const VerifyOptions& options_;
     const Limits& limits_;
     Reporter& reporter_;
     glm::uvec2 size_;
-    Table table_{{{"camera"},
-                  {"pixels", Align::Right},
-                  {"no value", Align::Right},
-                  {"texels", Align::Right},
-                  {"compact", Align::Right},
-                  {"nearest", Align::Right},
-                  {"RMSE/mean", Align::Right},
-                  {"noise", Align::Right},
-                  {"without it", Align::Right},
-                  {"of texels", Align::Right},
-                  {"PSNR, dB", Align::Right},
-                  {"FLIP", Align::Right},
-                  {"noise's", Align::Right}}};
+    Table table_ = verdictTable();
+    std::string uncertain_;
     std::string complaint_;
     bool withoutValue_ = false;
 };
@@ -214,7 +211,9 @@ ExitCode runVerify(const CLI::App& command, const VerifyOptions& options) {
     const auto limits = parseLimits(options.common.limits);
     if (!limits) return usageError(command, limits.error());
     const auto size = parseSize(options.size);
-    if (!size) return usageError(command, "--size " + options.size + ": not two numbers from 8 to 4096 with an x between them");
+    if (!size)
+        return usageError(
+            command, "--size " + options.size + ": not two numbers from 8 to 4096 with an x between them");
     VerifyRun run(options, *limits, reporter, *size);
     const auto status = run.run();
     if (!status) {
@@ -237,31 +236,54 @@ Command makeVerifyCommand(CLI::App& tool) {
         ->expected(2)
         ->check(suggestFiles({".toml", ".pf_vox", kPfProbeExtension}))
         ->group(group::kInputOutput);
-    command.add_option("-o,--output", options->output, "folder for the pictures: probes, reference, FLIP and tiers")
+    command
+        .add_option("-o,--output", options->output,
+                    "folder for the pictures: probes, reference, FLIP and tiers")
         ->option_text("FOLDER")
         ->check(suggestFiles({}))
         ->group(group::kInputOutput);
-    command.add_option("--camera", options->cameras, "a camera of the scene; may be given again (default: all)")
+    command
+        .add_option("--camera", options->cameras, "a camera of the scene; may be given again (default: all)")
         ->option_text("NAME")
         ->expected(1)
         ->take_all()
         ->group(kVerifying);
-    command.add_option("--size", options->size, "of the pictures (default 320x180)")->option_text("WxH")->group(kVerifying);
-    command.add_option("--samples", options->samples, "paths a pixel of the reference, 2 to 65536 (default 1024)")
+    command.add_option("--size", options->size, "of the pictures (default 320x180)")
+        ->option_text("WxH")
+        ->group(kVerifying);
+    command
+        .add_option("--samples", options->samples,
+                    "paths a pixel of the reference, 2 to 65536 (default 1024)")
         ->option_text("N")
         ->check(numberFrom(2, 65536))
         ->group(kVerifying);
     command
-        .add_option("--references", options->references,
-                    "folder of references: those there are not traced again, others are added")
-        ->option_text("FOLDER")
-        ->group(kVerifying);
-    command.add_flag("--compact", options->compact, "look at the small maps only")->group(kVerifying);
-    command.add_option("--max-rmse", options->maxRmsePercent, "fail when RMSE / mean of a camera is above, percent")
+        .add_option(
+            "--reference-noise", options->referenceNoisePercent,
+            "go on with the reference until its noise is at most so much of the error measured (default 33)")
         ->option_text("PERCENT")
         ->check(numberFrom(0, 1e6))
         ->group(kVerifying);
-    command.add_option("--max-flip", options->maxFlip, "fail when the mean FLIP of a camera is above, 0 to 1")
+    command
+        .add_option("--max-samples", options->maxSamples,
+                    "with at most so many paths a pixel, 2 to 1048576 (default: 16 times --samples)")
+        ->option_text("N")
+        ->check(numberFrom(2, kMostSamples))
+        ->group(kVerifying);
+    command
+        .add_option("--references", options->references,
+                    "folder of references: paths there are not traced again, new ones are added")
+        ->option_text("FOLDER")
+        ->group(kVerifying);
+    command.add_flag("--compact", options->compact, "look at the small maps only")->group(kVerifying);
+    command
+        .add_option("--max-rmse", options->maxRmsePercent,
+                    "fail when RMSE / mean of a camera is above, percent")
+        ->option_text("PERCENT")
+        ->check(numberFrom(0, 1e6))
+        ->group(kVerifying);
+    command
+        .add_option("--max-flip", options->maxFlip, "fail when the mean FLIP of a camera is above, 0 to 1")
         ->option_text("VALUE")
         ->check(numberFrom(0, 1))
         ->group(kVerifying);

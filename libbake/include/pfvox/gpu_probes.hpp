@@ -15,7 +15,6 @@ namespace pfvox::gpu {
 /// What of a probe file goes to the device.
 struct GpuProbeSettings {
     float voxelMetres = 0.1f;      ///< edge of a voxel of the scene: what offsets are measured in
-    float thicknessMetres = 0.0f;  ///< of surfaces, for light-field tracing; 0 = one voxel
     bool compactOnly = false;      ///< leave depth and light maps out: for pictures of the compact layers alone
 };
 /// What the probes take there.

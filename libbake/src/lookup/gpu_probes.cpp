@@ -134,7 +134,6 @@ shared::ProbeFieldRecord recordOf(const ProbeFileReader& reader, const GpuProbeS
     record.momentsEdge = resolution.moments;
     record.momentRange = info.grid.momentRange();
     record.voxelMetres = settings.voxelMetres;
-    record.thickness = settings.thicknessMetres > 0.0f ? settings.thicknessMetres : settings.voxelMetres;
     record.farMetres = info.depth.farMetres;
     record.depthScaleAndLogRange = {info.depth.scale, std::log(info.depth.scale * info.depth.farMetres + 1.0f)};
     if (const auto& proximity = reader.proximity(); proximity && !settings.compactOnly) {

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <pfvox/assert.hpp>
 #include <pfvox/verify.hpp>
 #include <pfvox_shaders/shaders.hpp>
 
@@ -77,7 +78,9 @@ VerifiedPixel pixelOf(const shared::VerifyPixel& pixel, const glm::vec4& even, c
     return result;
 }
 
-std::uint32_t groupsOf(std::uint32_t edge) { return (edge + shared::kVerifyGroupEdge - 1) / shared::kVerifyGroupEdge; }
+std::uint32_t groupsOf(std::uint32_t edge) {
+    return (edge + shared::kVerifyGroupEdge - 1) / shared::kVerifyGroupEdge;
+}
 
 /// What a picture needs on the device.
 struct Canvas {
@@ -87,10 +90,11 @@ struct Canvas {
     gpu::Buffer pixels;
     shared::VerifyPush push;
 
-    static Result<Canvas> create(gpu::Device& device, const VerifyInput& input, const VerifySettings& settings,
-                                 const bake::EmitterList& emitters) {
+    static Result<Canvas> create(gpu::Device& device, const VerifyInput& input,
+                                 const VerifySettings& settings, const bake::EmitterList& emitters) {
         PFVOX_TRY(Lamps, lamps, Lamps::create(device, emitters));
-        const std::uint64_t bytes = std::uint64_t{settings.width} * settings.height * sizeof(shared::VerifyPixel);
+        const std::uint64_t bytes =
+            std::uint64_t{settings.width} * settings.height * sizeof(shared::VerifyPixel);
         PFVOX_TRY(gpu::Buffer, scene, device.createBuffer(sizeof(shared::BakeScene), "verify scene"));
         PFVOX_TRY(gpu::Buffer, view, device.createBuffer(sizeof(shared::VerifyView), "verify view"));
         PFVOX_TRY(gpu::Buffer, pixels, device.createBuffer(bytes, "verify pixels"));
@@ -114,7 +118,8 @@ struct Canvas {
         return device.run({&dispatch, 1});
     }
 
-    Result<std::vector<shared::VerifyPixel>> download(gpu::Device& device, const VerifySettings& settings) const {
+    Result<std::vector<shared::VerifyPixel>> download(gpu::Device& device,
+                                                      const VerifySettings& settings) const {
         std::vector<shared::VerifyPixel> found(std::size_t{settings.width} * settings.height);
         PFVOX_CHECK(device.download(pixels, 0, std::as_writable_bytes(std::span(found))));
         return found;
@@ -126,31 +131,47 @@ struct Canvas {
 Result<ProbeVerifier> ProbeVerifier::create(gpu::Device& device) {
     const std::uint32_t hasGlass = 1;
     PFVOX_TRY(gpu::Program, program,
-              device.createProgram(shaders::kVerifyProbes, sizeof(shared::VerifyPush), "verify probes", {&hasGlass, 1}));
+              device.createProgram(shaders::kVerifyProbes, sizeof(shared::VerifyPush), "verify probes",
+                                   {&hasGlass, 1}));
     return ProbeVerifier(std::move(program));
 }
 
 Result<ReferencePicture> ProbeVerifier::trace(gpu::Device& device, const VerifyInput& input,
-                                              const VerifySettings& settings) const {
+                                              const VerifySettings& settings, ReferencePicture begun) const {
+    const std::size_t pixels = std::size_t{settings.width} * settings.height;
+    PFVOX_ASSERT(begun.samples == 0 || (begun.even.size() == pixels && begun.odd.size() == pixels));
+    if (begun.samples != 0 && begun.samples >= settings.samples) return begun;
     bake::EmitterList emitters;
     if (settings.emitterSampling) emitters = bake::makeEmitters(bake::placedModels(input.loaded));
     PFVOX_TRY(Canvas, canvas, Canvas::create(device, input, settings, emitters));
-    const std::vector<shared::VerifyPixel> none(std::size_t{settings.width} * settings.height);
-    PFVOX_CHECK(device.upload(canvas.pixels, 0, std::as_bytes(std::span(none))));
-    ReferencePicture picture{.width = settings.width, .height = settings.height, .even = {}, .odd = {}};
+    std::vector<shared::VerifyPixel> sums(pixels);
+    for (std::size_t i = 0; begun.samples != 0 && i < pixels; ++i) {
+        sums[i].even = begun.even[i];
+        sums[i].odd = begun.odd[i];
+    }
+    PFVOX_CHECK(device.upload(canvas.pixels, 0, std::as_bytes(std::span(sums))));
     const std::uint64_t fitting = kPathsPerDispatch / settings.width / shared::kVerifyGroupEdge;
     // llvmpipe bounds the loops of an invocation, all together: docs/decisions/013-baker.md.
     const bool software = device.info().kind == gpu::DeviceKind::Software;
-    const auto perDispatch = software ? 1u : static_cast<std::uint32_t>(std::clamp<std::uint64_t>(fitting, 1, settings.samples));
+    const auto perDispatch =
+        software ? 1u : static_cast<std::uint32_t>(std::clamp<std::uint64_t>(fitting, 1, settings.samples));
     shared::VerifyPush& push = canvas.push;
-    for (push.firstSample = 0; push.firstSample < settings.samples; push.firstSample += perDispatch) {
+    for (push.firstSample = begun.samples; push.firstSample < settings.samples;
+         push.firstSample += push.sampleCount) {
         push.sampleCount = std::min(perDispatch, settings.samples - push.firstSample);
         for (push.firstRow = 0; push.firstRow < settings.height; push.firstRow += shared::kVerifyGroupEdge) {
-            PFVOX_TRY(const double, gpuMs, canvas.launch(device, program_, {settings.width, shared::kVerifyGroupEdge}));
-            picture.gpuMs += gpuMs;
+            PFVOX_TRY(const double, gpuMs,
+                      canvas.launch(device, program_, {settings.width, shared::kVerifyGroupEdge}));
+            begun.gpuMs += gpuMs;
         }
     }
     PFVOX_TRY(const std::vector<shared::VerifyPixel>, found, canvas.download(device, settings));
+    ReferencePicture picture{.width = settings.width,
+                             .height = settings.height,
+                             .even = {},
+                             .odd = {},
+                             .samples = settings.samples,
+                             .gpuMs = begun.gpuMs};
     for (const shared::VerifyPixel& pixel : found) {
         picture.even.push_back(pixel.even);
         picture.odd.push_back(pixel.odd);

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <pfvox/flip.hpp>
 #include <pfvox/verify.hpp>
 
@@ -7,9 +8,19 @@ namespace pfvox {
 
 namespace {
 
-double squared(const glm::vec3& v) { return static_cast<double>(glm::dot(v, v)) / 3.0; }
-double mean(const glm::vec3& v) { return static_cast<double>(v.x + v.y + v.z) / 3.0; }
-bool isFinite(const glm::vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+// Of the paths of a reference, from one round to the next.
+constexpr double kMinGrowth = 2.0;
+constexpr double kMaxGrowth = 8.0;
+
+double squared(const glm::vec3& v) {
+    return static_cast<double>(glm::dot(v, v)) / 3.0;
+}
+double mean(const glm::vec3& v) {
+    return static_cast<double>(v.x + v.y + v.z) / 3.0;
+}
+bool isFinite(const glm::vec3& v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
 
 /// Sums over pixels with a value.
 struct Sums {
@@ -18,11 +29,13 @@ struct Sums {
     double error = 0.0;
     double noise = 0.0;
     double apart = 0.0;
+    std::vector<double> errors;  ///< squared, one a pixel
 
     void add(const VerifiedPixel& pixel) {
         ++pixels;
         reference += mean(pixel.reference);
-        error += squared(pixel.lookup - pixel.reference);
+        errors.push_back(squared(pixel.lookup - pixel.reference));
+        error += errors.back();
         noise += squared(pixel.noise);
         apart += mean(pixel.lookup - pixel.reference);
     }
@@ -37,9 +50,21 @@ struct Sums {
         part.relativeNoise = std::sqrt(noise / count) / part.meanReference;
         part.relativeError = std::sqrt(std::max(error - noise, 0.0) / count) / part.meanReference;
         part.relativeBias = apart / reference;
+        part.relativeTrimmedRmse = trimmedRmse() / part.meanReference;
         return part;
     }
+    double trimmedRmse() const {
+        std::vector<double> rest = errors;
+        const auto dropped = static_cast<std::size_t>(kTrimmedFraction * static_cast<double>(rest.size()));
+        const auto end = rest.end() - static_cast<std::ptrdiff_t>(dropped);
+        if (end != rest.end()) std::ranges::nth_element(rest, end);
+        return std::sqrt(std::accumulate(rest.begin(), end, 0.0) / static_cast<double>(end - rest.begin()));
+    }
 };
+
+bool hasValue(const VerifiedPixel& pixel) {
+    return pixel.tier != gpu::ProbeTier::None && isFinite(pixel.lookup) && isFinite(pixel.reference);
+}
 
 glm::vec3 exposed(const glm::vec3& light, double exposure) {
     const glm::vec3 value = isFinite(light) ? light : glm::vec3{0.0f};
@@ -94,7 +119,7 @@ VerifyScore scoreOf(const VerifiedPicture& picture) {
         if (!pixel.surface) continue;
         ++score.surfacePixels;
         score.tierShares[static_cast<std::size_t>(pixel.tier)] += 1.0;
-        if (pixel.tier == gpu::ProbeTier::None || !isFinite(pixel.lookup) || !isFinite(pixel.reference)) {
+        if (!hasValue(pixel)) {
             ++score.withoutValue;
             continue;
         }
@@ -110,6 +135,28 @@ VerifyScore scoreOf(const VerifiedPicture& picture) {
     score.exposure = score.all.meanReference > 0.0 ? 0.5 / score.all.meanReference : 1.0;
     compareExposed(picture, score);
     return score;
+}
+
+VerifyPart partOfAll(const VerifiedPicture& picture) {
+    Sums all;
+    for (const VerifiedPixel& pixel : picture.pixels) {
+        if (pixel.surface && hasValue(pixel)) all.add(pixel);
+    }
+    return all.part();
+}
+
+bool ReferenceTarget::isReached(const VerifyPart& part) const {
+    return part.relativeNoise <= noiseOfError * part.relativeError;
+}
+
+std::uint32_t ReferenceTarget::nextSamples(const VerifyPart& part, std::uint32_t samples) const {
+    if (isReached(part) || samples >= maxSamples) return samples;
+    // Noise falls with the root of the paths; a tenth more, since both figures are estimates.
+    const double wanted = noiseOfError * part.relativeError;
+    const double times = wanted > 0.0 ? 1.1 * std::pow(part.relativeNoise / wanted, 2.0) : kMaxGrowth;
+    const double next = std::clamp(times, kMinGrowth, kMaxGrowth) * samples;
+    const double even = 2.0 * std::ceil(next / 2.0);  // halves of equal size
+    return static_cast<std::uint32_t>(std::min(even, static_cast<double>(maxSamples)));
 }
 
 }  // namespace pfvox
