@@ -21,7 +21,7 @@ void castPath(BakeWave wave, Scene scene, uint place, inout RayCounts counts) {
     if (kHasGlass != 0u) glass = Paths(wave.paths).at[Numbers(wave.rays[push.set]).at[place]].lastGlass;
     Ray ray = rayAt(wave, place);
     Hit hit = kHasGlass != 0u ? castThroughGlass(scene, ray, glass, counts) : castRay(scene, ray, counts);
-    PathHits(wave.hits).at[place] = PathHit(hit.corner, hit.t, hit.instance, hit.node, uint(hit.scale), 0u);
+    PathHits(wave.hits).at[place] = PathHit(hit.corner, hit.t, hit.instance, hit.node, uint(hit.scale), hit.axis);
 }
 
 void castShadow(BakeWave wave, Scene scene, uint place, inout RayCounts counts) {

@@ -125,7 +125,7 @@ void main() {
         index = Numbers(wave.rays[push.set]).at[place];
         PathState path = Paths(wave.paths).at[index];
         PathHit stored = PathHits(wave.hits).at[place];
-        Hit hit = Hit(stored.t, stored.instance, stored.node, int(stored.scale), stored.corner);
+        Hit hit = Hit(stored.t, stored.instance, stored.node, int(stored.scale), stored.corner, stored.axis);
         alive = extendPath(bake, path, hit, found);
         if (alive) Paths(wave.paths).at[index] = path;
         if (maxOf(found.arrived) > 0.0) Vectors(wave.arrived).at[index].rgb += found.arrived;

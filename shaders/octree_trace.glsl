@@ -49,7 +49,9 @@ struct Hit {
     uint node;      // of a voxel: its brick; else the node that the cell is
     int scale;      // edge of the cell = 2^(scale - 23) cubes
     vec3 corner;    // lower corner of the cell, cube space
+    uint axis;      // of the face through which the ray came into the cell; kAxisInside = it starts there
 };
+const uint kAxisInside = 3u;
 
 struct TraceStatistics {
     uint steps;
@@ -236,10 +238,21 @@ uint passCell(inout Walk walk) {
     return leaveCell(walk, walk.scale);
 }
 
+// The axis of the last step, told from its time by the sums that the step was made of: where planes are met at once the walk
+// goes along x first and along z last, so that the face is one that the ray has seen, not one between two solid cells.
+uint enteredAxis(Walk walk, vec3 corner) {
+    vec3 tNear = (corner + edgeOf(walk.scale) - walk.origin) * walk.inverse;
+    float last = maxOf(tNear);
+    if (walk.tEnter + last < 0.0) return kAxisInside;
+    if (any(equal(tNear, vec3(walk.t)))) last = walk.t;
+    return tNear.z == last ? 2u : tNear.y == last ? 1u : 0u;
+}
+
 // What a walk that has hit found: all of `hit` but `instance`.
 void takeHit(Walk walk, inout Hit hit) {
     bvec3 mirrored = mirroredAxes(walk.flip);
     vec3 corner = uintBitsToFloat(walk.position & ~0u << walk.scale);
+    hit.axis = enteredAxis(walk, corner);
     hit.t = (walk.tEnter + walk.t) / walk.speed;
     hit.node = walk.index;
     hit.scale = walk.scale;
@@ -302,7 +315,7 @@ bool nextBvhLeaf(BvhNodes bvh, inout BvhWalk walk, float tMax, out BvhNode leaf)
     }
 }
 
-Hit missOf(Ray ray) { return Hit(ray.tMax, kNoInstance, 0u, 0, vec3(0.0)); }
+Hit missOf(Ray ray) { return Hit(ray.tMax, kNoInstance, 0u, 0, vec3(0.0), 0u); }
 
 bool beginInstance(SceneHeader scene, uint index, Ray ray, float tMax, out Walk walk) {
     InstanceRecord instance = Instances(scene.instances).at[index];
@@ -410,17 +423,6 @@ bool isLevelOfDetail(ModelRecord model, WideNode node, Hit hit) {
     return hit.scale != int(model.leafScale) && kindOf(node) != kWideSolid;
 }
 
-// The face through which the ray entered the leaf: the one of its three near planes that it met last. A plane that the
-// ray runs along is never that one.
-uint enteredAxis(vec3 origin, vec3 direction, vec3 near, out bool inside) {
-    const float never = -kInfinity;
-    float parallel = 1e-6 * maxOf(abs(direction));
-    vec3 t = mix((near - origin) / direction, vec3(never), lessThan(abs(direction), vec3(parallel)));
-    float last = maxOf(t);
-    inside = last < 0.0;
-    return t.x == last ? 0u : t.y == last ? 1u : 2u;
-}
-
 // A hit within its model.
 struct CubeHit {
     uint axis;  // of the face
@@ -435,9 +437,10 @@ CubeHit cubeHitOf(ModelRecord model, vec3 origin, vec3 direction, Hit hit) {
     float size = edgeOf(hit.scale);
     float voxelsPerCube = edgeOf(2 * kCubeScale - int(model.leafScale));
     CubeHit found;
-    bool inside;
+    bool inside = hit.axis == kAxisInside;
     bvec3 positive = greaterThan(direction, vec3(0.0));
-    found.axis = enteredAxis(origin, direction, mix(hit.corner + size, hit.corner, positive), inside);
+    vec3 along = abs(direction);
+    found.axis = !inside ? hit.axis : along.x >= maxOf(along) ? 0u : along.y >= along.z ? 1u : 2u;
     found.positive = positive[found.axis];
     found.face = inside ? kFaceInside : 2u * found.axis + (found.positive ? 0u : 1u);
 

@@ -115,7 +115,7 @@ PFVOX_STRUCT(PathHit) {
     uint instance;
     uint node;
     uint scale;
-    uint reserved;
+    uint axis;
 };
 PFVOX_SIZE(PathHit, 32);
 

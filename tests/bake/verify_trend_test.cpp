@@ -96,7 +96,7 @@ class VerifyTrend : public BakeTest {
             PFVOX_TRY(const VerifiedPicture, picture, verifier.lookUp(device(), input, *reference));
             const VerifyScore score = scoreOf(picture);
             EXPECT_EQ(score.withoutValue, 0u) << trend.name;
-            figures[compact ? "compact" : "all"] = {{"relativeRmse", score.all.relativeRmse}, {"meanFlip", score.meanFlip}};
+            figures[compact ? "compact" : "all"] = {{"relativeRmse", score.all.relativeRmse}, {"meanFlip", score.meanFlip}, {"trimmed", score.all.relativeTrimmedRmse}};
         }
         return figures;
     }

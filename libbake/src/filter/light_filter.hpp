@@ -37,7 +37,7 @@ struct LightFilterSettings {
     /// surface, whichever is farther. Where a texel covers more than a few voxels, its neighbors are as near
     /// as light can be known.
     float reachVoxels = 2.0f;
-    float reachTexels = 3.0f;
+    float reachTexels = 2.0f;
 };
 
 /// Of the same size as `light`; texels without surface stay as they are. Does not depend on threads or
