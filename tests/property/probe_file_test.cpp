@@ -264,12 +264,12 @@ TEST_F(ProbeMergeRefusal, NamesEachDifference) {
     back_.settings.seed = 1;
     EXPECT_THAT(refusal({front_, back_}), HasSubstr("does not belong to"));
     EXPECT_THAT(refusal({front_, back_}), HasSubstr("s0 was baked with --seed 77, "));
-    EXPECT_THAT(refusal({front_, back_}), HasSubstr("s1 with --seed 1 "));
+    EXPECT_THAT(refusal({front_, back_}), testing::EndsWith("s1 with --seed 1"));
     back_.settings.maxSamples = 8;
     back_.sceneHash.bytes[3] = 1;
     back_.depth.scale = 9;
     EXPECT_THAT(refusal({front_, back_}), HasSubstr(": other depth encoding, scene; "));
-    EXPECT_THAT(refusal({front_, back_}), HasSubstr("s1 with --seed 1, most samples 8 "));
+    EXPECT_THAT(refusal({front_, back_}), testing::EndsWith("s1 with --seed 1, most samples 8"));
     back_ = shardInfo(test::probeInfo({3, 2, 2}, {16, 16, 4, 6}), 6, 12);
     EXPECT_THAT(refusal({front_, back_}), testing::EndsWith("other resolution"));
 }
@@ -281,7 +281,7 @@ TEST_F(ProbeMergeRefusal, EverySettingCounts) {
         change(changed.settings);
         const std::string message = refusal({front_, changed});
         EXPECT_THAT(message, HasSubstr("was baked with " + first + ", "));
-        EXPECT_THAT(message, HasSubstr("s1 with " + second + " "));
+        EXPECT_THAT(message, testing::EndsWith("s1 with " + second));
     };
     refuses([](auto& s) { s.maxBounces = 0; }, "--bounces 16", "--bounces 0");
     refuses([](auto& s) { s.maxBounces = kUnlimitedBounces; }, "--bounces 16", "--bounces unlimited");
