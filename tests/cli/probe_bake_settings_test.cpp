@@ -36,6 +36,10 @@ TEST_F(ProbeBakeFigures, NoBounceIsNotNoLimit) {
         return json::parse(run({"verify", "--json", "scene.toml", name, "--size", "24x16", "--samples", "64"}).out)["all"]["meanReference"]
             .get<double>();
     };
+    // A gap between two boxes, whose walls light each other.
+    writePfVox(folder / "box.pf_vox", boxAsset({{0, 0, 0}, {12, 6, 12}}, 0.1, {{0, 0, 0}, {15, 0, 0}}));
+    writeScene("scene.toml", "box.pf_vox",
+               std::string(kGrid) + "[[cameras]]\nname = \"gap\"\nposition = [1.35, 1.4, 1.6]\ntarget = [1.35, 0.1, 0.6]\n");
     bake("none.pf_probe", {"--samples", "32", "--bounces", "0"});
     bake("all.pf_probe", {"--samples", "32"});
     EXPECT_EQ(info("none.pf_probe")["settings"]["maxBounces"], 0);
