@@ -90,7 +90,7 @@ LitProbe BakeTest::lightAt(const LoadedScene& scene, const glm::vec3& position, 
         probe.seen = std::move(seen);
         probe.light = std::move(traced.light);
         probe.errors.assign(traced.errors.begin(), traced.errors.end());
-        probe.meanError = traced.tiles.meanError;
+        probe.meanError = traced.tiles.meanError.value_or(0.0);
         return {};
     }();
     EXPECT_TRUE(lit) << describe(lit.error());

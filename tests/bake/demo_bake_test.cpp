@@ -43,13 +43,14 @@ TEST_F(DemoBakeTest, AllLayersOfTheDemoScene) {
     settings.resolution.light = 16;
     PFVOX_ASSERT_VALUE(const BakeReport, report,
                        bakeProbes(device(), scene, settings, folder / "demo.pf_probe", observer, diagnostics));
-    std::cout << "  " << report.probes << " probes, " << report.relocated << " relocated, " << report.inactive
-              << " inactive; " << report.emitterFaces << " emitter faces; " << report.light.rays << " rays; uncovered cells "
-              << report.proximity.uncoveredCells << " of " << report.proximity.surfaceCells << "; noise " << report.meanError
-              << "; " << report.fileBytes << " bytes; " << report.totalMs << " ms (light " << report.light.gpuMs
+    std::cout << "  " << report.probes << " probes, " << report.counts.relocated << " relocated, "
+              << report.counts.inactive << " inactive; " << report.emitterFaces << " emitter faces; "
+              << report.light.rays << " rays; uncovered cells " << report.proximity.uncoveredCells << " of "
+              << report.proximity.surfaceCells << "; noise " << report.meanError.value() << "; "
+              << report.fileBytes << " bytes; " << report.totalMs << " ms (light " << report.light.gpuMs
               << ", proximity " << report.proximityMs << ")\n";
     EXPECT_EQ(report.probes, 75u);
-    EXPECT_GT(report.active, 60u);
+    EXPECT_GT(report.counts.active, 60u);
     EXPECT_EQ(report.cappedRays, 0u);
     EXPECT_GT(report.emitterFaces, 0u);
     EXPECT_GT(report.proximity.seenSamples, report.proximity.samples / 4);

@@ -55,9 +55,21 @@ TEST(TileRounds, TheErrorIsThatOfTheMean) {
     const TileRules rules{.minBatches = 2, .maxBatches = 64, .noiseTarget = 0.004};
     const std::array tiles{tileOf(2, 0.0), tileOf(2, 0.0), tileOf(64, 1.0 / 3.0), tileOf(2, 0.0)};
     const bake::TileSummary summary = bake::summaryOf(tiles, rules);
-    EXPECT_NEAR(summary.meanError, 0.25 * std::sqrt(1.0 / 3.0 / 64.0 / 64.0) / 2.0, 1e-7);
+    EXPECT_NEAR(summary.meanError.value(), 0.25 * std::sqrt(1.0 / 3.0 / 64.0 / 64.0) / 2.0, 1e-7);
     EXPECT_DOUBLE_EQ(summary.cappedTileShare, 0.25);
     EXPECT_TRUE(std::isinf(bake::relativeError(tileOf(1, 0.0), rules)));
+}
+
+/// "noise 0.00 %" of 16 paths.
+TEST(TileRounds, OneBatchTellsNoError) {
+    const TileRules fixed{.minBatches = 1, .maxBatches = 1};
+    const std::array tiles{tileOf(1, 0.0), tileOf(1, 0.0)};
+    EXPECT_FALSE(bake::summaryOf(tiles, fixed).meanError);
+    EXPECT_EQ(bake::summaryOf(tiles, fixed).cappedTileShare, 0.0);
+    const TileRules adaptive{.minBatches = 1, .maxBatches = 1, .noiseTarget = 0.5};
+    EXPECT_EQ(bake::summaryOf(tiles, adaptive).cappedTileShare, 1.0) << "stopped, and nobody knows how noisy";
+    const std::array mixed{tileOf(1, 0.0), tileOf(2, 0.0)};
+    EXPECT_EQ(bake::summaryOf(mixed, fixed).meanError, 0.0);
 }
 
 TEST(TileRounds, DarkTilesAreJudgedByTheFloor) {

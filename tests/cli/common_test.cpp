@@ -4,17 +4,21 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
-#include <filesystem>
 #include <chrono>
+#include <cstring>
+#include <filesystem>
+#include <regex>
 #include <thread>
 #include <vector>
 
 #include "common/batch.hpp"
+#include "common/command_line.hpp"
 #include "common/depfile.hpp"
 #include "common/exit_code.hpp"
 #include "common/inputs.hpp"
 #include "common/table.hpp"
 #include "common/text.hpp"
+#include "support/temp_folder.hpp"
 
 namespace pfvox::tools {
 
@@ -66,6 +70,46 @@ TEST(Table, alignsByWhatIsSeenNotByBytes) {
     table.addRow({"Tür", "7"});
     table.addRow({"Wand", "12"});
     EXPECT_EQ(table.render(), "name  count\nTür       7\nWand     12\n");
+}
+
+/// CLI11 wrote false into the variable of --filter, --no-filter while it was declared.
+TEST(Switch, holdsWhatItHeldUntilItIsGiven) {
+    struct Held {
+        bool on = true;
+        bool off = false;
+        std::optional<bool> open;
+    };
+    const auto parsed = [](std::vector<std::string> arguments) {
+        Held held;
+        CLI::App app;
+        addSwitch(app, "on", held.on, "");
+        addSwitch(app, "off", held.off, "");
+        addSwitch(app, "open", held.open, "", "--open");
+        std::ranges::reverse(arguments);
+        app.parse(arguments);
+        return std::tuple(held.on, held.off, held.open);
+    };
+    EXPECT_EQ(parsed({}), std::tuple(true, false, std::optional<bool>()));
+    EXPECT_EQ(parsed({"--no-on", "--off", "--open"}), std::tuple(false, true, std::optional(true)));
+    EXPECT_EQ(parsed({"--on", "--no-off", "--no-open"}), std::tuple(true, false, std::optional(false)));
+}
+
+TEST(Limits, defaultsAreThoseOfTheReference) {
+    const std::string reference =
+        test::readText(std::filesystem::path(PFVOX_TESTS_DIR).parent_path() / "docs/cli.md");
+    const std::size_t begin = reference.find("Limits and their defaults:");
+    ASSERT_NE(begin, std::string::npos);
+    const std::string listed = reference.substr(begin, reference.find("\n\n", begin) - begin);
+    static const std::regex kLimit("`(max\\w+)` (\\d+[KMG]?)");
+    const Limits defaults;
+    static_assert(std::has_unique_object_representations_v<Limits>);
+    std::size_t count = 0;
+    for (std::sregex_iterator it(listed.begin(), listed.end(), kLimit), end; it != end; ++it, ++count) {
+        const auto limits = parseLimits({(*it)[1].str() + "=" + (*it)[2].str()});
+        ASSERT_TRUE(limits) << limits.error();
+        EXPECT_EQ(std::memcmp(&*limits, &defaults, sizeof defaults), 0) << (*it)[0];
+    }
+    EXPECT_EQ(count, 8u);
 }
 
 TEST(ExitCode, ofARunFollowsItsFailures) {

@@ -3,29 +3,12 @@
 #include <thread>
 
 #include "cli/probe_bake_fixture.hpp"
-#include "support/scene_assets.hpp"
 
 namespace pfvox::test {
 namespace {
 
 using ::testing::HasSubstr;
 using nlohmann::json;
-
-class ProbeBakeScene : public ProbeBake {
-  protected:
-    void SetUp() override { writePfVox(folder / "box.pf_vox", boxAsset({{0, 0, 0}, {12, 6, 12}}, 0.1)); }
-
-    void writeScene(const std::string& name, const std::string& model, const std::string& grid) const {
-        writeText(folder / name, grid + "\n[[models]]\nname = \"box\"\npath = \"" + model + "\"\n");
-    }
-    static std::vector<std::string> tiny(std::vector<std::string> arguments) {
-        for (const char* word : {"--resolution", "16,8,4,6", "--samples", "32"}) arguments.emplace_back(word);
-        return arguments;
-    }
-
-    static constexpr const char* kGrid =
-        "probeGridPos = [-0.5, 0.3, -0.5]\nprobeGridStep = 1.1\nprobeGridCount = [3, 2, 3]\nproximityGridSize = [8, 8, 8]\n";
-};
 
 TEST_F(ProbeBakeScene, WarningsNameTheSceneOnce) {
     writeText(folder / "a.toml", "colour = 1\n[[models]]\npath = \"box.pf_vox\"\n");

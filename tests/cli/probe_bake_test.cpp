@@ -53,6 +53,29 @@ TEST_F(ProbeBake, InfoMeansAreOverWhatIsSeen) {
     EXPECT_NEAR(counted["meanDepth"], 2.0, 1e-3);
 }
 
+/// info named its own version of the format and took 0 for "no limit".
+TEST_F(ProbeBake, InfoOfAnOlderFileSaysWhatItDoesNotKnow) {
+    std::filesystem::copy_file(std::filesystem::path(PFVOX_TESTS_DIR) / "golden/data/v1_0.pf_probe",
+                               folder / "old.pf_probe");
+    const json old = json::parse(run({"info", "--json", "old.pf_probe"}).out);
+    expectSchema("probe-info", old);
+    EXPECT_EQ(old["formatVersion"], "1.0");
+    EXPECT_EQ(old["settings"]["maxBounces"], 16);
+    for (const char* name : {"noiseFloor", "sampling", "stratified", "relocate", "filter"})
+        EXPECT_TRUE(old["settings"].at(name).is_null()) << name;
+    const ProcessResult text = run({"info", "old.pf_probe"});
+    EXPECT_THAT(text.out, HasSubstr("PF_PROBE 1.0, "));
+    EXPECT_THAT(text.out, HasSubstr("--filter unknown"));
+}
+
+TEST_F(ProbeBake, InfoCountsStatesAsBakeDoes) {
+    write("a.pf_probe", probeField(probeInfo()));
+    const json states = json::parse(run({"info", "--json", "a.pf_probe"}).out)["states"];
+    EXPECT_EQ(states["active"], 10) << "relocated ones are active";
+    EXPECT_EQ(states["relocated"], 2);
+    EXPECT_THAT(run({"info", "a.pf_probe"}).out, HasSubstr("10 active, 2 of them relocated; 2 inactive"));
+}
+
 TEST_F(ProbeBake, InfoOfSomethingElseFails) {
     writeText(folder / "a.pf_probe", "no probe file at all, but long enough to hold a header of one");
     EXPECT_EQ(run({"info", "a.pf_probe"}).exitCode, 4);
@@ -93,12 +116,39 @@ TEST_F(ProbeBake, CompareTellsHowFarFilesAreApart) {
     EXPECT_EQ(difference["layers"][1]["differentWords"], 1);
     EXPECT_EQ(difference["layers"][1]["largestProbe"], 0);
     EXPECT_EQ(difference["layers"][0]["differentWords"], 0);
-    EXPECT_THAT(std::string(difference["differentSettings"][0]), HasSubstr("seed 77 and 78"));
+    EXPECT_THAT(std::string(difference["differentSettings"][0]), HasSubstr("--seed 77 and --seed 78"));
 
     const ProcessResult unequal = run({"compare", "--equal", "a.pf_probe", "b.pf_probe"});
     EXPECT_EQ(unequal.exitCode, 1);
     EXPECT_THAT(unequal.err, HasSubstr("1 probe differ"));
     EXPECT_EQ(run({"compare", "--min-psnr", "200", "a.pf_probe", "b.pf_probe"}).exitCode, 1);
+}
+
+/// A field without one active probe was as near to another as could be asked for; so was light beside a dark
+/// map.
+TEST_F(ProbeBake, CompareDoesNotPraiseWhatItDidNotSee) {
+    ProbeField field = probeField(probeInfo());
+    write("a.pf_probe", field);
+    for (ProbeData& probe : field.probes) probe.light.assign(probe.light.size(), 0);
+    write("dark.pf_probe", field);
+    for (ProbeData& probe : field.probes)
+        probe = {.record = {.state = ProbeState::Inactive}, .inputHash = probe.inputHash};
+    field.proximity.reset();
+    write("none.pf_probe", field);
+    const ProcessResult none = run({"compare", "--json", "a.pf_probe", "none.pf_probe"});
+    ASSERT_EQ(none.exitCode, 0) << none.err;
+    const json difference = json::parse(none.out);
+    expectSchema("probe-compare", difference);
+    EXPECT_TRUE(difference["layers"][0]["withinOneShare"].is_null());
+    EXPECT_THAT(run({"compare", "a.pf_probe", "none.pf_probe"}).out, ::testing::Not(HasSubstr("100.000 %")));
+    for (const char* limit : {"--min-psnr", "--min-depth-within-one"}) {
+        const ProcessResult asked = run({"compare", limit, "1", "a.pf_probe", "none.pf_probe"});
+        EXPECT_EQ(asked.exitCode, 1) << limit;
+        EXPECT_THAT(asked.err, HasSubstr("no probe is active in both"));
+    }
+    EXPECT_EQ(run({"compare", "--min-psnr", "100", "none.pf_probe", "none.pf_probe"}).exitCode, 0);
+    EXPECT_EQ(run({"compare", "--min-psnr", "100", "a.pf_probe", "dark.pf_probe"}).exitCode, 1);
+    EXPECT_EQ(run({"compare", "--min-psnr", "100", "dark.pf_probe", "a.pf_probe"}).exitCode, 1);
 }
 
 TEST_F(ProbeBake, CompareRefusesOtherGrids) {

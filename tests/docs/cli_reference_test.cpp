@@ -4,8 +4,9 @@
 namespace pfvox::test {
 namespace {
 
-using ::testing::Contains;
 using ::testing::ContainerEq;
+using ::testing::Contains;
+using ::testing::HasSubstr;
 
 const std::string& reference() {
     static const std::string text = readText(std::filesystem::path(PFVOX_DOCS_DIR) / "cli.md");
@@ -60,6 +61,34 @@ TEST(CliReference, NamesEveryOptionOfEveryCommand) {
         const std::set<std::string> named = optionsNamedIn(text);
         for (const std::string& option : optionsIn(help(it)))
             EXPECT_THAT(named, Contains(option)) << "of " << it.tool << ' ' << it.command;
+    }
+}
+
+/// The rows of a table in which an option stands, without code marks.
+std::string rowsOf(const std::string& text, const std::string& option) {
+    std::string rows;
+    std::istringstream in(text);
+    for (std::string line; std::getline(in, line);) {
+        if (!line.starts_with("| `") || !optionsNamedIn(line.substr(0, line.find(" | "))).contains(option))
+            continue;
+        std::erase(line, '`');
+        rows += line + "\n";
+    }
+    return rows;
+}
+
+TEST(CliReference, TellsTheDefaultsThatHelpShows) {
+    for (const ToolCommand& it : everyCommand()) {
+        if (it.command.empty() && it.tool != "pfview") continue;
+        std::string text;
+        for (const Section& section : sections()) {
+            if (isAbout(section.heading, it)) text += section.text;
+        }
+        for (const HelpRow& row : helpRows(it)) {
+            if (row.shown.empty()) continue;
+            EXPECT_THAT(rowsOf(text, row.option), HasSubstr("default: " + row.shown))
+                << "of " << it.tool << ' ' << it.command << ' ' << row.option;
+        }
     }
 }
 

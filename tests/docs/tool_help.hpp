@@ -64,6 +64,28 @@ inline std::set<std::string> optionsIn(const std::string& page) {
     return names;
 }
 
+/// An option in a help page.
+struct HelpRow {
+    std::string option;  ///< by its first long name: "--filter", "--jobs"
+    std::string line;
+    std::string shown;  ///< the default; empty = none
+};
+
+inline std::vector<HelpRow> helpRows(const ToolCommand& it) {
+    static const std::regex kOption(R"(^ {2,6}(-\w, )?(--[a-z][\w-]*))");
+    static const std::regex kDefault(R"( \(default: (.*)\)$)");
+    std::vector<HelpRow> found;
+    std::istringstream in(help(it));
+    for (std::string line; std::getline(in, line);) {
+        std::smatch option;
+        if (!std::regex_search(line, option, kOption)) continue;
+        std::smatch shown;
+        const bool hasDefault = std::regex_search(line, shown, kDefault);
+        found.push_back({option[2], line, hasDefault ? shown[1].str() : std::string()});
+    }
+    return found;
+}
+
 /// The commands that a help page lists.
 inline std::vector<std::string> commandsIn(const std::string& page) {
     std::vector<std::string> names;

@@ -1,5 +1,6 @@
-// The bytes of PF_PROBE 1.0. A reader must always take the file of every version; the writer of this version must make
-// the same bytes again. Where the writer changes on purpose, run with PFVOX_UPDATE_GOLDEN=1 and say why in CHANGELOG.md.
+// The bytes of PF_PROBE 1.0 and 1.1. A reader must always take the file of every version; the writer of this
+// version must make the same bytes again. Where the writer changes on purpose, run with PFVOX_UPDATE_GOLDEN=1
+// and say why in CHANGELOG.md.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -30,12 +31,38 @@ ProbeFieldInfo shardInfo() {
 
 class PfProbeGolden : public testing::TestWithParam<Golden> {};
 
-INSTANTIATE_TEST_SUITE_P(Files, PfProbeGolden,
-                         testing::Values(Golden{"v1_0.pf_probe", test::probeInfo(), true},
-                                         Golden{"v1_0_shard.pf_probe", shardInfo(), false},
-                                         Golden{"v1_0_wide.pf_probe", shardInfo(), true}));
+/// What a file of 1.0 tells of the settings.
+ProbeFieldInfo ofVersion1_0(ProbeFieldInfo info) {
+    const ProbeBakeSettings& s = info.settings;
+    info.settings = {.seed = s.seed,
+                     .tracedEdge = s.tracedEdge,
+                     .minSamples = s.minSamples,
+                     .maxSamples = s.maxSamples,
+                     .maxBounces = s.maxBounces,
+                     .noiseTarget = s.noiseTarget,
+                     .noiseFloor = {},
+                     .sampling = {},
+                     .stratified = {},
+                     .relocate = {},
+                     .filter = {}};
+    return info;
+}
 
-TEST_P(PfProbeGolden, WriterMakesTheSameBytes) {
+class PfProbeWritten : public PfProbeGolden {};
+
+INSTANTIATE_TEST_SUITE_P(Files, PfProbeGolden,
+                         testing::Values(Golden{"v1_0.pf_probe", ofVersion1_0(test::probeInfo()), true},
+                                         Golden{"v1_0_shard.pf_probe", ofVersion1_0(shardInfo()), false},
+                                         Golden{"v1_0_wide.pf_probe", ofVersion1_0(shardInfo()), true},
+                                         Golden{"v1_1.pf_probe", test::probeInfo(), true},
+                                         Golden{"v1_1_shard.pf_probe", shardInfo(), false},
+                                         Golden{"v1_1_wide.pf_probe", shardInfo(), true}));
+INSTANTIATE_TEST_SUITE_P(Files, PfProbeWritten,
+                         testing::Values(Golden{"v1_1.pf_probe", test::probeInfo(), true},
+                                         Golden{"v1_1_shard.pf_probe", shardInfo(), false},
+                                         Golden{"v1_1_wide.pf_probe", shardInfo(), true}));
+
+TEST_P(PfProbeWritten, WriterMakesTheSameBytes) {
     const ContentKey key{{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16}};
     const auto bytes = encodePfProbe(GetParam().field(), {.contentKey = key}).value();
     const std::string text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
@@ -43,7 +70,7 @@ TEST_P(PfProbeGolden, WriterMakesTheSameBytes) {
     EXPECT_TRUE(text == test::readText(GetParam().file()));
 }
 
-TEST_P(PfProbeGolden, ReaderTakesVersion1_0) {
+TEST_P(PfProbeGolden, ReaderTakesIt) {
     DiagnosticList diagnostics;
     const auto field = loadPfProbe(GetParam().file(), Limits{}, diagnostics);
     ASSERT_TRUE(field) << describe(field.error());

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <pfvox/files.hpp>
 #include <pfvox/probe_file.hpp>
 #include <random>
 #include <thread>
@@ -262,13 +263,69 @@ TEST_F(ProbeMergeRefusal, NamesMissingAndRepeatedProbes) {
 TEST_F(ProbeMergeRefusal, NamesEachDifference) {
     back_.settings.seed = 1;
     EXPECT_THAT(refusal({front_, back_}), HasSubstr("does not belong to"));
-    EXPECT_THAT(refusal({front_, back_}), testing::EndsWith("other seed"));
+    EXPECT_THAT(refusal({front_, back_}), HasSubstr("s0 was baked with --seed 77, "));
+    EXPECT_THAT(refusal({front_, back_}), testing::EndsWith("s1 with --seed 1"));
     back_.settings.maxSamples = 8;
     back_.sceneHash.bytes[3] = 1;
     back_.depth.scale = 9;
-    EXPECT_THAT(refusal({front_, back_}), testing::EndsWith("other depth encoding, seed, bake settings, scene"));
+    EXPECT_THAT(refusal({front_, back_}), HasSubstr(": other depth encoding, scene; "));
+    EXPECT_THAT(refusal({front_, back_}), testing::EndsWith("s1 with --seed 1, most samples 8"));
     back_ = shardInfo(test::probeInfo({3, 2, 2}, {16, 16, 4, 6}), 6, 12);
     EXPECT_THAT(refusal({front_, back_}), testing::EndsWith("other resolution"));
+}
+
+/// Shards baked with other --bounces, --relocate, samples or filter were merged with exit code 0.
+TEST_F(ProbeMergeRefusal, EverySettingCounts) {
+    const auto refuses = [&](auto change, const std::string& first, const std::string& second) {
+        ProbeFieldInfo changed = back_;
+        change(changed.settings);
+        const std::string message = refusal({front_, changed});
+        EXPECT_THAT(message, HasSubstr("was baked with " + first + ", "));
+        EXPECT_THAT(message, testing::EndsWith("s1 with " + second));
+    };
+    refuses([](auto& s) { s.maxBounces = 0; }, "--bounces 16", "--bounces 0");
+    refuses([](auto& s) { s.maxBounces = kUnlimitedBounces; }, "--bounces 16", "--bounces unlimited");
+    refuses([](auto& s) { s.relocate = false; }, "--relocate", "--no-relocate");
+    refuses([](auto& s) { s.filter = 0; }, "--filter (revision 1)", "--no-filter");
+    refuses([](auto& s) { s.filter = 2; }, "--filter (revision 1)", "--filter (revision 2)");
+    refuses([](auto& s) { s.filter.reset(); }, "--filter (revision 1)", "--filter unknown");
+    refuses([](auto& s) { s.minSamples = 16; }, "least samples 32", "least samples 16");
+    refuses([](auto& s) { s.noiseTarget = 0.25f; }, "--noise 0.125", "--noise 0.25");
+    refuses([](auto& s) { s.noiseFloor = 0.5f; }, "noise floor 0.25", "noise floor 0.5");
+    refuses([](auto& s) { s.stratified = false; }, "stratified points on", "stratified points off");
+    std::size_t settings = 0;
+    forEachProbeSetting(
+        [&](const ProbeSetting&, const auto& value, auto& changed) {
+            ++settings;
+            const auto kept = changed;
+            changed = {};
+            EXPECT_NE(refusal({front_, back_}), "merged") << settings;
+            changed = kept;
+            EXPECT_EQ(value, changed);
+        },
+        std::as_const(front_.settings), back_.settings);
+    EXPECT_EQ(settings, 11u);
+}
+
+/// What files do not keep is in their content keys.
+TEST_F(ProbeMergeRefusal, OtherContentKeysOfOneDeviceAreOfTwoBakes) {
+    const auto merged = [&](const ProbeFieldInfo& back, std::uint8_t key) {
+        const std::vector<std::filesystem::path> shards{folder_ / "a", folder_ / "b"};
+        const auto write = [&](const auto& file, const ProbeFieldInfo& info, std::uint8_t byte) {
+            const auto bytes = encodePfProbe(test::probeField(info, false), {.contentKey = {{byte}}}).value();
+            ASSERT_TRUE(io::writeFileAtomically(file, bytes));
+        };
+        write(shards[0], front_, 1);
+        write(shards[1], back, key);
+        DiagnosticList diagnostics;
+        const auto result = mergeProbeFields(shards, folder_ / "whole", {}, Limits{}, diagnostics);
+        return result ? "merged" : describe(result.error());
+    };
+    EXPECT_EQ(merged(back_, 1), "merged");
+    EXPECT_EQ(merged(back_, 0), "merged") << "it is not known";
+    EXPECT_THAT(merged(back_, 2), HasSubstr("other content key"));
+    back_.deviceName = "another device";
+    EXPECT_EQ(merged(back_, 2), "merged") << "the key names the device";
 }
 
 TEST_F(ProbeMergeRefusal, OtherDevicesAreReported) {

@@ -66,6 +66,8 @@ TEST(DependencyRules, Hold) {
           "libformat/src/import/vdb/vdb_reader.cpp",
           "libformat/src/import/vdb/vdb_reader.hpp"}},
         {"public headers of libbake are free of Vulkan", "libbake/include", R"(#include <vulkan)", {}},
+        {"pairs of flags are declared by addSwitch()", "tools", R"(!--no-)", {"tools/common/command_line.cpp"}},
+        {"pairs of flags are declared by addSwitch()", "viewer", R"(!--no-)", {}},
         {"the viewer consumes only what was built", "viewer", R"(#include <pfvox/(import|convert|export)\.hpp>)", {}},
     };
     for (const Rule& rule : rules) {

@@ -91,10 +91,28 @@ std::function<std::string(const std::string&)> numberFrom(double low, double hig
     };
 }
 
+CLI::Option* addSwitch(CLI::App& command, const std::string& name, bool& value, const std::string& meaning) {
+    return command
+        .add_flag_function(
+            fmt::format("--{0},!--no-{0}", name), [&value](std::int64_t count) { value = count > 0; },
+            meaning)
+        ->check(showDefault((value ? "--" : "--no-") + name));
+}
+
+CLI::Option* addSwitch(CLI::App& command, const std::string& name, std::optional<bool>& value,
+                       const std::string& meaning, const std::string& byDefault) {
+    return command
+        .add_flag_function(
+            fmt::format("--{0},!--no-{0}", name), [&value](std::int64_t count) { value = count > 0; },
+            meaning)
+        ->check(showDefault(byDefault));
+}
+
 void addCommonOptions(CLI::App& command, CommonOptions& options) {
-    command.add_option("-j,--jobs", options.threads, "threads, 0 = one for each processor (default 0)")
+    command.add_option("-j,--jobs", options.threads, "threads, 0 = one for each processor")
         ->option_text("N")
         ->check(numberFrom(0, kMaxThreads))
+        ->check(showDefault(options.threads))
         ->group(group::kGeneral);
     auto* quiet = command.add_flag("-q,--quiet", options.quiet, "print errors only")->group(group::kGeneral);
     command.add_flag("-v,--verbose", options.verbose, "print notes too, and a line for every file")
@@ -102,10 +120,10 @@ void addCommonOptions(CLI::App& command, CommonOptions& options) {
         ->group(group::kGeneral);
     command.add_flag("--json", options.json, "print one JSON object a file on stdout")
         ->group(group::kGeneral);
-    command
-        .add_option("--color", options.color, "auto, always or never (default auto; NO_COLOR is honoured)")
+    command.add_option("--color", options.color, "auto, always or never; auto honors NO_COLOR")
         ->option_text("WHEN")
         ->check(CLI::IsMember({"auto", "always", "never"}))
+        ->check(showDefault(options.color))
         ->group(group::kGeneral);
     command
         .add_option("--limit", options.limits,

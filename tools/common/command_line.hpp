@@ -45,6 +45,13 @@ ExitCode usageError(const CLI::App& command, const std::string& message);
 /// A check for options: refuses what is not a finite number from `low` to `high`. (CLI::Range lets NaN pass.)
 std::function<std::string(const std::string&)> numberFrom(double low, double high);
 
+/// `--name` and `--no-name` for one value. It holds what it held until one of them is given: CLI11's own
+/// flags write their variable when they are declared, unless it is a plain bool.
+CLI::Option* addSwitch(CLI::App& command, const std::string& name, bool& value, const std::string& meaning);
+/// The same where what holds without them is decided later; `byDefault` is shown.
+CLI::Option* addSwitch(CLI::App& command, const std::string& name, std::optional<bool>& value,
+                       const std::string& meaning, const std::string& byDefault);
+
 /// Options of every subcommand.
 struct CommonOptions {
     int threads = 0;

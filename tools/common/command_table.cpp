@@ -8,13 +8,19 @@ namespace pfvox::tools {
 
 namespace {
 
-/// The part of `text` between `open` and `close`, cut at `separator`; nothing when it is not there.
-std::vector<std::string> listIn(const std::string& text, const std::string& open, char close, char separator) {
+/// The part of `text` between `open` and `close`; nothing when it is not there.
+std::string textIn(const std::string& text, const std::string& open, char close) {
     const std::size_t begin = text.find(open);
     if (begin == std::string::npos) return {};
     const std::size_t start = begin + open.size();
+    return text.substr(start, text.find(close, start) - start);
+}
+
+/// The same, cut at `separator`.
+std::vector<std::string> listIn(const std::string& text, const std::string& open, char close,
+                                char separator) {
     std::vector<std::string> words;
-    for (std::string& word : CLI::detail::split(text.substr(start, text.find(close, start) - start), separator)) {
+    for (std::string& word : CLI::detail::split(textIn(text, open, close), separator)) {
         word = word.substr(0, word.find("->"));  // a transformer lists what becomes what
         if (!word.empty()) words.push_back(std::move(word));
     }
@@ -27,10 +33,12 @@ OptionRow rowOf(const CLI::Option& option, const std::string& group) {
     OptionRow row{.names = {},
                   .value = {},
                   .meaning = option.get_description(),
+                  .defaultText = textIn(checks, "default<", '>'),
                   .group = group,
                   .words = listIn(checks, "{", '}', ','),
                   .isFile = checks.find("files(") != std::string::npos,
                   .suffixes = listIn(checks, "files(", ')', ' ')};
+    if (!row.defaultText.empty()) row.meaning += " (default: " + row.defaultText + ")";
     for (const std::string& name : option.get_snames()) row.names.push_back("-" + name);
     for (const std::string& name : option.get_lnames()) row.names.push_back("--" + name);
     if (row.names.empty()) {

@@ -13,7 +13,8 @@ namespace pfvox::tools {
 struct OptionRow {
     std::vector<std::string> names;  ///< "-o", "--output"; empty for arguments
     std::string value;               ///< what its value is called, "PATH"; empty for flags
-    std::string meaning;
+    std::string meaning;             ///< with the default behind it
+    std::string defaultText;  ///< what holds without the option, showDefault(); empty = nothing to tell
     std::string group;
     std::vector<std::string> words;     ///< values to suggest
     bool isFile = false;                ///< the value is a file or folder

@@ -124,4 +124,8 @@ CLI::Validator suggestWords(const std::vector<std::string>& words) {
     return CLI::Validator([](std::string&) { return std::string(); }, fmt::format("{{{}}}", fmt::join(words, ",")));
 }
 
+CLI::Validator showDefault(const std::string& text) {
+    return CLI::Validator([](std::string&) { return std::string(); }, fmt::format("default<{}>", text));
+}
+
 }  // namespace pfvox::tools

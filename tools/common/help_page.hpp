@@ -3,11 +3,14 @@
 // (command_table.hpp).
 #pragma once
 
+#include <fmt/format.h>
+
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <memory>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "common/exit_code.hpp"
@@ -44,5 +47,13 @@ const HelpText& helpTextOf(const CLI::App& app);
 CLI::Validator suggestFiles(const std::vector<std::string>& suffixes);
 /// The same for words, where another check decides.
 CLI::Validator suggestWords(const std::vector<std::string>& words);
+
+/// For `check()` of an option: what holds when it is left out, which help, man page and completion then show.
+/// Take it from the variable or the settings that hold it, never from a literal.
+CLI::Validator showDefault(const std::string& text);
+template <class Number>
+requires std::is_arithmetic_v<Number> CLI::Validator showDefault(Number value) {
+    return showDefault(fmt::format("{}", value));
+}
 
 }  // namespace pfvox::tools

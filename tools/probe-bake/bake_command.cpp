@@ -181,6 +181,7 @@ class BakeRun {
         const Existing existing = inspect(options_, limits_);
         const ContentKey key = bakeContentKey(scene, *settings, device.info());
         const ProbeRange range = settings->range.value_or(ProbeRange{0, static_cast<std::uint32_t>(scene.probes.probeCount())});
+        outcome_.contentKey = key;
         outcome_.reason = reasonFor(options_, existing, key, range);
         if (options_.dryRun) {
             outcome_.planned = true;

@@ -13,7 +13,8 @@ namespace pfvox::tools {
 namespace {
 
 constexpr double kMaxSampleCount = 65536;
-constexpr double kMaxBounceCount = 16;
+constexpr std::uint64_t kMaxBounceCount = 16;
+constexpr const char* kUnlimited = "unlimited";
 constexpr std::uint32_t kSampleBatch = 16;
 constexpr const char* kBaking = "Baking";
 
@@ -37,13 +38,48 @@ std::optional<std::vector<std::uint64_t>> parseCounts(std::string_view text, cha
     }
 }
 
+/// A texel of thesis maps has its own paths only, as in the original.
+bool filtersByDefault(const std::string& profile) {
+    return BakeSettings{}.filter && profile != "thesis";
+}
+
+std::string filterDefaultText() {
+    std::string text = BakeSettings{}.filter ? "--filter" : "--no-filter";
+    for (const char* const profile : {"thesis", "compact"}) {
+        if (filtersByDefault(profile) != BakeSettings{}.filter)
+            text += fmt::format("; with --profile {} {}", profile,
+                                filtersByDefault(profile) ? "--filter" : "--no-filter");
+    }
+    return text;
+}
+
+void addBounces(CLI::App& command, std::optional<std::uint32_t>& bounces) {
+    const auto set = [&bounces](const std::string& text) {
+        bounces.reset();
+        if (text != kUnlimited) bounces = static_cast<std::uint32_t>(std::stoul(text));
+    };
+    const auto check = [](const std::string& text) -> std::string {
+        const auto count = parseCount(text);
+        if (text == kUnlimited || (count && *count <= kMaxBounceCount)) return {};
+        return fmt::format("{} is neither a whole number from 0 to {} nor {}", text, kMaxBounceCount,
+                           kUnlimited);
+    };
+    command
+        .add_option_function<std::string>("--bounces", set,
+                                          "reflections of a path, 0 to 16; unlimited: until it has no weight")
+        ->option_text("N")
+        ->check(check)
+        ->check(showDefault(bounces ? std::to_string(*bounces) : kUnlimited))
+        ->group(kBaking);
+}
+
 void addLightOptions(CLI::App& command, BakeOptions& options) {
-    auto* profile = command
-                        .add_option("--profile", options.profile,
-                                    "maps of a probe: thesis, default or compact (default: default)")
-                        ->option_text("NAME")
-                        ->check(CLI::IsMember({"thesis", "default", "compact"}))
-                        ->group(kBaking);
+    auto* profile =
+        command.add_option("--profile", options.profile, "maps of a probe: thesis, default or compact")
+            ->option_text("NAME")
+            ->check(CLI::IsMember({"thesis", "default", "compact"}))
+            ->check(showDefault(options.profile))
+            ->group(kBaking);
     command
         .add_option("--resolution", options.resolution,
                     "own edges of the maps instead: depth,light,irradiance,moments in texels, 0 = none")
@@ -58,41 +94,43 @@ void addLightOptions(CLI::App& command, BakeOptions& options) {
                         ->group(kBaking);
     command
         .add_option("--noise", options.noise,
-                    "relative standard error at which a tile of texels is done, 0.0001 to 1 (default 0.02)")
-        ->option_text("SHARE")
+                    "relative standard error at which a tile of texels is done, 0.0001 to 1")
+        ->option_text("FRACTION")
+        ->check(showDefault(BakeSettings{}.noiseTarget))
         ->excludes(samples)
         ->check(numberFrom(1e-4, 1))
         ->group(kBaking);
-    command.add_option("--max-samples", options.maxSamples, "paths a texel at most, 32 to 65536 (default 4096)")
+    command.add_option("--max-samples", options.maxSamples, "paths a texel at most, 32 to 65536")
         ->option_text("N")
+        ->check(showDefault(options.maxSamples))
         ->excludes(samples)
         ->check(numberFrom(32, kMaxSampleCount))
         ->group(kBaking);
-    command.add_option("--bounces", options.bounces, "reflections of a path, 0 to 16 (default: until it has no weight)")
+    addBounces(command, options.bounces);
+    command.add_option("--seed", options.seed, "of the random numbers")
         ->option_text("N")
-        ->check(numberFrom(0, kMaxBounceCount))
+        ->check(showDefault(options.seed))
         ->group(kBaking);
-    command.add_option("--seed", options.seed, "of the random numbers (default 0)")->option_text("N")->group(kBaking);
-    command
-        .add_flag("--filter,!--no-filter", options.filter,
-                  "take noise out of the light maps (default but for thesis); else a texel has its own paths only")
+    addSwitch(command, "filter", options.filter,
+              "take noise out of the light maps, or leave each texel its own paths only", filterDefaultText())
         ->group(kBaking);
-    command
-        .add_flag("--relocate,!--no-relocate", options.relocate,
-                  "move probes out of solids (default); else they are inactive")
+    addSwitch(command, "relocate", options.relocate, "move probes out of solids, or make them inactive")
         ->group(kBaking);
 }
 
 void addRunOptions(CLI::App& command, BakeOptions& options) {
     addDeviceOption(command, options.device);
-    command
-        .add_option("--device-memory", options.deviceMemoryMiB, "device memory to take at most (default: what there is)")
+    command.add_option("--device-memory", options.deviceMemoryMiB, "device memory to take at most")
         ->option_text("MIB")
+        ->check(showDefault("what there is"))
         ->check(numberFrom(1, 1 << 24))
         ->group(kBaking);
     command.add_flag("--list-devices", options.listDevices, "print the devices and do nothing")->group(kBaking);
-    command.add_option("--probes", options.probes, "bake probes A to B - 1 only, or part K of N, from 0: a shard for merge")
+    command
+        .add_option("--probes", options.probes,
+                    "bake probes A to B - 1 only, or part K of N, from 0: a shard for merge")
         ->option_text("A:B|K/N")
+        ->check(showDefault("0/1"))
         ->group(kBaking);
     command.add_flag("--resume", options.resume, "take finished probes of a stopped bake from the journal")
         ->group(kBaking);
@@ -109,8 +147,9 @@ void addRunOptions(CLI::App& command, BakeOptions& options) {
 }  // namespace
 
 void addDeviceOption(CLI::App& command, std::string& device) {
-    command.add_option("--device", device, "number or part of the name (default: the first real GPU)")
+    command.add_option("--device", device, "number or part of the name")
         ->option_text("DEVICE")
+        ->check(showDefault("the first real GPU, else the first device"))
         ->group(kBaking);
 }
 
@@ -196,7 +235,7 @@ tl::expected<BakeSettings, std::string> settingsOf(const BakeOptions& options, s
     if (options.noise) settings.noiseTarget = static_cast<float>(*options.noise);
     settings.maxBounces = options.bounces;
     settings.seed = options.seed;
-    settings.filter = options.filter.value_or(options.profile != "thesis");
+    settings.filter = options.filter.value_or(filtersByDefault(options.profile));
     settings.relocate = options.relocate;
     settings.resume = options.resume;
     settings.force = options.force;

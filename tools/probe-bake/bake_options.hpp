@@ -18,9 +18,9 @@ struct BakeOptions {
     std::string resolution;
     std::optional<std::uint32_t> samples;
     std::optional<double> noise;
-    std::uint32_t maxSamples = 4096;
-    std::optional<std::uint32_t> bounces;
-    std::uint64_t seed = 0;
+    std::uint32_t maxSamples = BakeSettings{}.maxSamples;
+    std::optional<std::uint32_t> bounces = BakeSettings{}.maxBounces;
+    std::uint64_t seed = BakeSettings{}.seed;
     std::string probes;
     std::string device;
     std::uint64_t deviceMemoryMiB = 0;
@@ -28,8 +28,8 @@ struct BakeOptions {
     bool listDevices = false;
     bool dryRun = false;
     bool resume = false;
-    std::optional<bool> filter;
-    bool relocate = true;
+    std::optional<bool> filter;  ///< nothing = as filtersByDefault() has it
+    bool relocate = BakeSettings{}.relocate;
     bool force = false;
     bool explain = false;
     bool ifChanged = false;

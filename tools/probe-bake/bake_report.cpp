@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "common/text.hpp"
+#include "probe-bake/probe_statistics.hpp"
 
 namespace pfvox::tools {
 
@@ -19,6 +20,17 @@ Json passJson(const BakePass& pass) { return {{"rays", pass.rays}, {"gpuMs", pas
 const char* statusOf(const BakeOutcome& outcome) {
     if (!outcome.error) return outcome.report.upToDate ? "up-to-date" : outcome.planned ? "planned" : "baked";
     return outcome.error->code == ErrorCode::Cancelled ? "interrupted" : "failed";
+}
+
+std::string noiseLine(const BakeReport& report) {
+    std::string line = "  ";
+    if (report.meanSamples) line += fmt::format("{:.1f} paths a texel, ", *report.meanSamples);
+    line += "noise " + percentText(report.meanError);
+    if (report.maxError) line += fmt::format(" (worst probe {})", percentText(report.maxError));
+    if (report.cappedTileShare)
+        line += fmt::format(", {} of the tiles stopped at the largest number",
+                            percentText(report.cappedTileShare));
+    return line + "\n";
 }
 
 std::string proximityLine(const ProximityReport& proximity) {
@@ -51,19 +63,13 @@ std::string bakeText(const BakeOutcome& outcome, bool explain) {
     std::string text = fmt::format("baked {} -> {}: {}, {} in {}{}\n", outcome.input, outcome.output,
                                    plural(report.probes, "probe"), formatBytes(report.fileBytes),
                                    formatDuration(report.totalMs * 1e-3), why);
-    text += fmt::format("  {} active, {} of them relocated; {} inactive; {} from the journal\n",
-                        formatCount(report.active), formatCount(report.relocated), formatCount(report.inactive),
-                        formatCount(report.reused));
+    text += fmt::format("  {}; {} from the journal\n", countsText(report.counts), formatCount(report.reused));
     text += fmt::format("  {} rays for geometry at {} rays/s, {} for light at {} rays/s on {}\n",
                         formatRoughly(static_cast<double>(report.geometry.rays)),
                         formatRoughly(raysPerSecond(report.geometry)),
                         formatRoughly(static_cast<double>(report.light.rays)), formatRoughly(raysPerSecond(report.light)),
                         outcome.device);
-    text += fmt::format("  {:.1f} paths a texel, noise {:.2f} % (worst probe {:.2f} %), {:.2f} % of the tiles stopped at "
-                        "the largest number\n",
-                        report.meanSamples, 100.0 * report.meanError, 100.0 * report.maxError,
-                        100.0 * report.cappedTileShare);
-    return text + proximityLine(report.proximity);
+    return text + noiseLine(report) + proximityLine(report.proximity);
 }
 
 Json bakeJson(const BakeOutcome& outcome) {
@@ -73,12 +79,11 @@ Json bakeJson(const BakeOutcome& outcome) {
     json["output"] = outcome.output;
     json["status"] = statusOf(outcome);
     json["reason"] = outcome.reason;
+    json["contentKey"] = outcome.contentKey ? Json(outcome.contentKey->hex()) : Json(nullptr);
     json["device"] = outcome.device;
     json["probes"] = report.probes;
     json["reused"] = report.reused;
-    json["active"] = report.active;
-    json["relocated"] = report.relocated;
-    json["inactive"] = report.inactive;
+    json.update(countsJson(report.counts));
     json["geometry"] = passJson(report.geometry);
     json["light"] = passJson(report.light);
     json["smallLayersMs"] = report.smallLayersMs;
@@ -87,10 +92,10 @@ Json bakeJson(const BakeOutcome& outcome) {
     json["totalMs"] = report.totalMs;
     json["emitterFaces"] = report.emitterFaces;
     json["cappedRays"] = report.cappedRays;
-    json["meanError"] = report.meanError;
-    json["maxError"] = report.maxError;
-    json["cappedTileShare"] = report.cappedTileShare;
-    json["meanSamples"] = report.meanSamples;
+    json["meanError"] = orNull(report.meanError);
+    json["maxError"] = orNull(report.maxError);
+    json["cappedTileShare"] = orNull(report.cappedTileShare);
+    json["meanSamples"] = orNull(report.meanSamples);
     json["surfaceCells"] = report.proximity.surfaceCells;
     json["uncoveredCells"] = report.proximity.uncoveredCells;
     json["fileBytes"] = report.fileBytes;

@@ -17,6 +17,8 @@ struct BakeOutcome {
     std::string output;
     std::string device;
     std::string reason;  ///< why it was baked or not, one clause
+    std::optional<ContentKey>
+        contentKey;  ///< of what was asked for; nothing = it failed before that was known
     BakeReport report;
     std::vector<Diagnostic> diagnostics;
     std::optional<Error> error;

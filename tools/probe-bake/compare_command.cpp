@@ -7,6 +7,7 @@
 #include "common/text.hpp"
 #include "probe-bake/commands.hpp"
 #include "probe-bake/compare_fields.hpp"
+#include "probe-bake/probe_statistics.hpp"
 
 namespace pfvox::tools {
 
@@ -34,7 +35,7 @@ HelpText helpText() {
 std::string differenceText(const FieldDifference& difference) {
     std::string text = fmt::format("{} of {} equal\n", formatCount(difference.equalProbes),
                                    plural(difference.probes, "probe"));
-    for (const std::string& name : difference.differentSettings) text += "  baked with another " + name + "\n";
+    for (const std::string& name : difference.differentSettings) text += "  baked with " + name + "\n";
     if (!difference.differentRecords.empty()) {
         text += fmt::format("  {} in another state or place:", plural(difference.differentRecords.size(), "probe"));
         for (std::size_t i = 0; i < std::min(kFewProbes, difference.differentRecords.size()); ++i)
@@ -50,14 +51,17 @@ std::string differenceText(const FieldDifference& difference) {
                  {"within 1 code", Align::Right},
                  {"normals, degrees", Align::Right}});
     for (const LayerDifference& layer : difference.layers) {
-        const bool depth = layer.layer == ProbeLayer::DepthNormal || layer.layer == ProbeLayer::MinDepth;
         const bool light = layer.layer == ProbeLayer::Light || layer.layer == ProbeLayer::Irradiance;
-        table.addRow({std::string(toString(layer.layer)), formatCount(layer.words), formatCount(layer.differentWords),
-                      fmt::format("{:.4g}", layer.largest),
+        table.addRow({std::string(toString(layer.layer)), formatCount(layer.words),
+                      formatCount(layer.differentWords), fmt::format("{:.4g}", layer.largest),
                       layer.largestProbe == kNoProbe ? "-" : std::to_string(layer.largestProbe),
-                      !light ? "-" : layer.psnrDecibel ? fmt::format("{:.2f}", *layer.psnrDecibel) : "inf",
-                      depth ? fmt::format("{:.3f} %", 100.0 * layer.withinOneShare) : "-",
-                      layer.layer == ProbeLayer::DepthNormal ? fmt::format("{:.2f}", layer.largestNormalDegrees) : "-"});
+                      !light || layer.words == 0 ? "-"
+                      : layer.psnrDecibel        ? fmt::format("{:.2f}", *layer.psnrDecibel)
+                                                 : "inf",
+                      layer.withinOneShare ? fmt::format("{:.3f} %", 100.0 * *layer.withinOneShare) : "-",
+                      layer.layer == ProbeLayer::DepthNormal
+                          ? fmt::format("{:.2f}", layer.largestNormalDegrees)
+                          : "-"});
     }
     return text + table.render(2);
 }
@@ -78,8 +82,8 @@ Json differenceJson(const CompareOptions& options, const FieldDifference& differ
              {"differentWords", layer.differentWords},
              {"largest", layer.largest},
              {"largestProbe", layer.largestProbe == kNoProbe ? Json(nullptr) : Json(layer.largestProbe)},
-             {"psnrDecibel", layer.psnrDecibel ? Json(*layer.psnrDecibel) : Json(nullptr)},
-             {"withinOneShare", layer.withinOneShare},
+             {"psnrDecibel", orNull(layer.psnrDecibel)},
+             {"withinOneShare", orNull(layer.withinOneShare)},
              {"largestNormalDegrees", layer.largestNormalDegrees}});
     return json;
 }
@@ -91,9 +95,12 @@ std::string complaint(const CompareOptions& options, const FieldDifference& diff
     for (const LayerDifference& layer : difference.layers) {
         if (options.minPsnr && layer.psnrDecibel && *layer.psnrDecibel < *options.minPsnr)
             return fmt::format("layer {}: {:.2f} dB", toString(layer.layer), *layer.psnrDecibel);
-        if (options.minWithinOne && 100.0 * layer.withinOneShare < *options.minWithinOne)
+        if (options.minWithinOne && layer.withinOneShare &&
+            100.0 * *layer.withinOneShare < *options.minWithinOne)
             return fmt::format("layer {}: {:.3f} % of the codes within 1", toString(layer.layer),
-                               100.0 * layer.withinOneShare);
+                               100.0 * *layer.withinOneShare);
+        if ((options.minPsnr || options.minWithinOne) && layer.words == 0 && !difference.equal())
+            return fmt::format("layer {}: no probe is active in both", toString(layer.layer));
     }
     return {};
 }

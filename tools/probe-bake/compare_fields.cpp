@@ -17,6 +17,7 @@ struct LayerSums {
     std::uint64_t withinOne = 0;
     double squares = 0.0;
     double peak = 0.0;
+    double secondPeak = 0.0;
 
     void note(double apart, std::uint32_t probe) {
         if (apart <= difference.largest) return;
@@ -48,6 +49,8 @@ void addLight(LayerSums& sums, std::uint32_t probe, std::uint32_t a, std::uint32
     sums.note(std::max({apart.x, apart.y, apart.z}), probe);
     sums.squares += glm::dot(apart, apart) / 3.0;
     sums.peak = std::max({sums.peak, first.x, first.y, first.z});
+    const glm::dvec3 second{unpackLight(b)};
+    sums.secondPeak = std::max({sums.secondPeak, second.x, second.y, second.z});
 }
 
 void addMoments(LayerSums& sums, std::uint32_t probe, std::uint32_t a, std::uint32_t b) {
@@ -82,11 +85,12 @@ std::vector<LayerDifference> finished(const AllSums& sums, const ProbeResolution
         LayerDifference layer = sums[i].difference;
         layer.layer = static_cast<ProbeLayer>(i);
         if (!resolution.has(layer.layer)) continue;
-        const auto words = static_cast<double>(std::max<std::uint64_t>(layer.words, 1));
-        if (layer.layer == ProbeLayer::DepthNormal || layer.layer == ProbeLayer::MinDepth)
-            layer.withinOneShare = layer.words == 0 ? 1.0 : static_cast<double>(sums[i].withinOne) / words;
-        if (sums[i].squares > 0.0 && sums[i].peak > 0.0)
-            layer.psnrDecibel = 10.0 * std::log10(sums[i].peak * sums[i].peak / (sums[i].squares / words));
+        const auto words = static_cast<double>(layer.words);
+        const bool depth = layer.layer == ProbeLayer::DepthNormal || layer.layer == ProbeLayer::MinDepth;
+        if (depth && layer.words != 0) layer.withinOneShare = static_cast<double>(sums[i].withinOne) / words;
+        const double peak = sums[i].peak > 0.0 ? sums[i].peak : sums[i].secondPeak;
+        if (sums[i].squares > 0.0)
+            layer.psnrDecibel = 10.0 * std::log10(peak * peak / (sums[i].squares / words));
         layers.push_back(layer);
     }
     return layers;
@@ -110,15 +114,13 @@ std::vector<std::string> settingsApart(const ProbeFieldInfo& a, const ProbeField
     const auto add = [&](bool differ, std::string text) {
         if (differ) names.push_back(std::move(text));
     };
-    add(a.settings.seed != b.settings.seed, fmt::format("seed {} and {}", a.settings.seed, b.settings.seed));
-    ProbeBakeSettings sameSeed = b.settings;
-    sameSeed.seed = a.settings.seed;
-    add(a.settings != sameSeed, "samples, bounces or noise target");
-    add(a.lightContent != b.lightContent, "content of the light");
-    add(a.sceneHash != b.sceneHash, "scene");
-    add(a.shaderHash != b.shaderHash, "programs");
-    add(a.deviceName != b.deviceName, fmt::format("device {} and {}", a.deviceName, b.deviceName));
-    add(a.toolName != b.toolName, fmt::format("tool {} and {}", a.toolName, b.toolName));
+    for (const ProbeSettingDifference& difference : differencesOf(a.settings, b.settings))
+        names.push_back(difference.first + " and " + difference.second);
+    add(a.lightContent != b.lightContent, "other kinds of light");
+    add(a.sceneHash != b.sceneHash, "another scene");
+    add(a.shaderHash != b.shaderHash, "other programs");
+    add(a.deviceName != b.deviceName, fmt::format("the devices {} and {}", a.deviceName, b.deviceName));
+    add(a.toolName != b.toolName, fmt::format("the tools {} and {}", a.toolName, b.toolName));
     return names;
 }
 

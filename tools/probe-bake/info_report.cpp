@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <type_traits>
 
 #include "common/table.hpp"
 #include "common/text.hpp"
@@ -21,11 +22,6 @@ constexpr std::array kLayers{ProbeLayer::DepthNormal, ProbeLayer::Light, ProbeLa
 template <class Vector>
 Json vectorJson(const Vector& v) {
     return {v.x, v.y, v.z};
-}
-
-template <class T>
-Json orNull(const std::optional<T>& value) {
-    return value ? Json(*value) : Json(nullptr);
 }
 
 std::string orDash(const std::optional<double>& value) {
@@ -90,12 +86,23 @@ Json lightContentJson(std::uint32_t content) {
 }
 
 Json settingsJson(const ProbeBakeSettings& settings) {
-    return {{"seed", settings.seed},
-            {"tracedEdge", settings.tracedEdge},
-            {"minSamples", settings.minSamples},
-            {"maxSamples", settings.maxSamples},
-            {"maxBounces", settings.maxBounces},
-            {"noiseTarget", settings.noiseTarget}};
+    Json json;
+    const auto add = [&](const ProbeSetting& setting, const auto& value) {
+        if constexpr (std::is_arithmetic_v<std::decay_t<decltype(value)>>) {
+            json[std::string(setting.name)] = value;
+        } else {
+            json[std::string(setting.name)] = value ? Json(*value) : Json(nullptr);
+        }
+    };
+    forEachProbeSetting(add, settings);
+    if (settings.maxBounces == kUnlimitedBounces) json["maxBounces"] = "unlimited";
+    return json;
+}
+
+/// Files of PF_PROBE 1.0 say 0 where it is unknown.
+std::optional<double> errorOf(const ProbeFileInfo& info, const ProbeRecord& record) {
+    if (!record.error || (info.versionMinor == 0 && *record.error == 0.0f)) return std::nullopt;
+    return static_cast<double>(*record.error);
 }
 
 Json probeJson(const ProbeFileInfo& info, std::size_t i) {
@@ -110,16 +117,11 @@ Json probeJson(const ProbeFileInfo& info, std::size_t i) {
     json["maxIndirect"] = orNull(counted.maxIndirect);
     json["minDepth"] = orNull(counted.minDepthMetres);
     json["meanDepth"] = orNull(counted.meanDepthMetres);
-    json["error"] = record.error;
-    json["cappedTileShare"] = record.cappedTileShare;
+    json["error"] = orNull(errorOf(info, record));
+    json["cappedTileShare"] =
+        info.field.settings.isAdaptive() && record.isActive() ? Json(record.cappedTileShare) : Json(nullptr);
     json["hash"] = fmt::format("{:016x}", record.hash);
     return json;
-}
-
-std::array<std::size_t, 3> statesOf(const ProbeFileInfo& info) {
-    std::array<std::size_t, 3> counts{};
-    for (const ProbeRecord& record : info.records) ++counts[static_cast<std::size_t>(record.state)];
-    return counts;
 }
 
 std::string probeTable(const ProbeFileInfo& info, std::size_t maxRows) {
@@ -137,12 +139,14 @@ std::string probeTable(const ProbeFileInfo& info, std::size_t maxRows) {
         const ProbeStatistics& counted = info.probes[i];
         const glm::vec3 at = info.positions[i];
         const auto& mean = counted.meanIndirect;
-        table.addRow({std::to_string(info.field.range.first + i), fmt::format("{:.2f} {:.2f} {:.2f}", at.x, at.y, at.z),
+        table.addRow({std::to_string(info.field.range.first + i),
+                      fmt::format("{:.2f} {:.2f} {:.2f}", at.x, at.y, at.z),
                       std::string(toString(info.records[i].state)),
                       counted.missShare ? fmt::format("{:.1f} %", 100.0 * *counted.missShare) : "-",
                       mean ? fmt::format("{:.3f} {:.3f} {:.3f}", mean->x, mean->y, mean->z) : "-",
-                      orDash(counted.maxIndirect), orDash(counted.minDepthMetres), orDash(counted.meanDepthMetres),
-                      fmt::format("{:.1f} %", 100.0 * static_cast<double>(info.records[i].error))});
+                      orDash(counted.maxIndirect), orDash(counted.minDepthMetres),
+                      orDash(counted.meanDepthMetres),
+                      info.records[i].isActive() ? percentText(errorOf(info, info.records[i])) : "-"});
     }
     std::string text = table.render(kIndent);
     if (shown < info.probes.size())
@@ -165,20 +169,26 @@ std::string layerTable(const ProbeFileInfo& info) {
     return table.render(kIndent);
 }
 
+std::string samplesText(const ProbeBakeSettings& settings) {
+    if (!settings.isAdaptive()) return fmt::format("{} paths a texel", settings.minSamples);
+    return fmt::format("{} to {} paths a texel until noise is {}", settings.minSamples, settings.maxSamples,
+                       percentText(static_cast<double>(settings.noiseTarget)));
+}
+
 std::string headline(const ProbeFileInfo& info) {
     const ProbeFieldInfo& field = info.field;
     const ProbeGrid& grid = field.grid;
     const ProbeBakeSettings& settings = field.settings;
     std::string text = fmt::format("PF_PROBE {}.{}, {}, profile {}, content key {}\n", kPfProbeVersionMajor,
-                                   kPfProbeVersionMinor, formatBytes(info.fileBytes),
+                                   info.versionMinor, formatBytes(info.fileBytes),
                                    toString(profileOf(field.resolution)), info.contentKey.hex());
     text += fmt::format("  grid {} x {} x {} from {:.2f} {:.2f} {:.2f} m, step {:.2f} {:.2f} {:.2f} m\n", grid.counts.x,
                         grid.counts.y, grid.counts.z, grid.start.x, grid.start.y, grid.start.z, grid.step.x,
                         grid.step.y, grid.step.z);
     if (!field.isWhole()) text += fmt::format("  a shard: probes {} to {}\n", field.range.first, field.range.end - 1);
-    text += fmt::format("  {} to {} paths a texel, {}, seed {}, by {} on {}\n", settings.minSamples, settings.maxSamples,
-                        settings.maxBounces == 0 ? "no bounce limit" : plural(settings.maxBounces, "bounce"),
-                        settings.seed, field.toolName, field.deviceName);
+    text += fmt::format("  {}, --seed {}, by {} on {}\n", samplesText(settings), settings.seed,
+                        field.toolName, field.deviceName);
+    text += "  " + probeSettingsText(settings) + "\n";
     if (info.proximityCounts)
         text += fmt::format("  proximity grid {} x {} x {}, {} with probes\n", info.proximityCounts->x,
                             info.proximityCounts->y, info.proximityCounts->z, plural(info.coveredCells, "cell"));
@@ -193,6 +203,7 @@ Result<ProbeFileInfo> readProbeFileInfo(const std::filesystem::path& file, const
     ProbeFileInfo info{.file = file,
                        .field = reader.info(),
                        .contentKey = reader.contentKey(),
+                       .versionMinor = reader.versionMinor(),
                        .fileBytes = reader.fileBytes(),
                        .proximityCounts = {},
                        .layers = layerSizes(reader),
@@ -217,19 +228,17 @@ std::string infoText(const ProbeFileInfo& info, const Reporter& reporter, bool c
     const auto title = [&](std::string_view word, std::size_t count) {
         return "\n" + reporter.styled(Reporter::Style::Strong, fmt::format("{} ({})", word, formatCount(count))) + "\n";
     };
-    const auto states = statesOf(info);
     std::string text = reporter.styled(Reporter::Style::Strong, info.file.string()) + "\n" + headline(info);
     text += title("Probes", info.probes.size()) + probeTable(info, complete ? info.probes.size() : kFewRows);
-    text += fmt::format("  {} active, {} relocated, {} inactive\n", states[0], states[2], states[1]);
+    text += "  " + countsText(countProbes(info.records)) + "\n";
     return text + title("Layers", info.layers.size()) + layerTable(info);
 }
 
 Json infoJson(const ProbeFileInfo& info) {
     const ProbeFieldInfo& field = info.field;
-    const auto states = statesOf(info);
     Json json;
     json["file"] = info.file.string();
-    json["formatVersion"] = fmt::format("{}.{}", kPfProbeVersionMajor, kPfProbeVersionMinor);
+    json["formatVersion"] = fmt::format("{}.{}", kPfProbeVersionMajor, info.versionMinor);
     json["fileBytes"] = info.fileBytes;
     json["contentKey"] = info.contentKey.hex();
     json["grid"] = {{"start", vectorJson(field.grid.start)},
@@ -247,7 +256,7 @@ Json infoJson(const ProbeFileInfo& info) {
     json["proximity"] = Json(nullptr);
     if (info.proximityCounts)
         json["proximity"] = {{"counts", vectorJson(*info.proximityCounts)}, {"coveredCells", info.coveredCells}};
-    json["states"] = {{"active", states[0]}, {"inactive", states[1]}, {"relocated", states[2]}};
+    json["states"] = countsJson(countProbes(info.records));
     json["layers"] = Json::array();
     for (const LayerSize& size : info.layers)
         json["layers"].push_back({{"name", toString(size.layer)},

@@ -24,6 +24,7 @@ struct ProbeFileInfo {
     std::filesystem::path file;
     ProbeFieldInfo field;
     ContentKey contentKey;
+    std::uint16_t versionMinor = 0;
     std::uint64_t fileBytes = 0;
     std::optional<glm::uvec3> proximityCounts;
     std::uint64_t coveredCells = 0;         ///< of the proximity grid: name a probe

@@ -1,7 +1,11 @@
 #include "probe-bake/probe_statistics.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <pfvox/probe_maths.hpp>
+
+#include "common/text.hpp"
 
 namespace pfvox::tools {
 
@@ -73,6 +77,23 @@ ProbeStatistics statisticsOf(const ProbeFieldInfo& info, const ProbeData& data) 
     if (info.resolution.depth != 0) addDepth(info, data, statistics);
     if (info.resolution.light != 0) addLight(info, data, statistics);
     return statistics;
+}
+
+std::string countsText(const ProbeCounts& counts) {
+    return fmt::format("{} active, {} of them relocated; {} inactive", formatCount(counts.active),
+                       formatCount(counts.relocated), formatCount(counts.inactive));
+}
+
+Json countsJson(const ProbeCounts& counts) {
+    return {{"active", counts.active}, {"relocated", counts.relocated}, {"inactive", counts.inactive}};
+}
+
+std::string percentText(const std::optional<double>& fraction) {
+    return fraction ? fmt::format("{:.2f} %", 100.0 * *fraction) : "unknown";
+}
+
+Json orNull(const std::optional<double>& value) {
+    return value ? Json(*value) : Json(nullptr);
 }
 
 }  // namespace pfvox::tools

@@ -3,6 +3,9 @@
 
 #include <optional>
 #include <pfvox/pf_probe.hpp>
+#include <string>
+
+#include "common/json.hpp"
 
 namespace pfvox::tools {
 
@@ -17,5 +20,13 @@ struct ProbeStatistics {
 
 /// `data` fits the resolution of `info`.
 ProbeStatistics statisticsOf(const ProbeFieldInfo& info, const ProbeData& data);
+
+/// "9 active, 2 of them relocated; 1 inactive": the words for it in all reports.
+std::string countsText(const ProbeCounts& counts);
+Json countsJson(const ProbeCounts& counts);  ///< the same as an object
+
+/// "1.25 %", or "unknown".
+std::string percentText(const std::optional<double>& fraction);
+Json orNull(const std::optional<double>& value);  ///< null where it is unknown
 
 }  // namespace pfvox::tools

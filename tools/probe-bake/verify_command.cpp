@@ -131,11 +131,11 @@ class VerifyRun {
             gpu::GpuProbes::upload(device, reader,
                                    {.voxelMetres = voxelMetresOf(loaded), .compactOnly = options_.compact}));
         PFVOX_TRY(const ProbeVerifier, verifier, ProbeVerifier::create(device));
-        const std::uint32_t bounces = reader.info().settings.maxBounces;
+        const std::uint32_t bounces = reader.info().settings.maxBounces.value_or(kUnlimitedBounces);
         const VerifySettings settings{.width = size_.x,
                                       .height = size_.y,
                                       .samples = options_.samples,
-                                      .maxBounces = bounces == 0 ? VerifySettings{}.maxBounces : bounces};
+                                      .maxBounces = std::min(bounces, VerifySettings{}.maxBounces)};
         const ReferenceStore store(options_.references, reader.info().sceneHash);
         for (const Camera& camera : cameras) {
             const VerifyInput input{loaded, scene, probes, camera};
@@ -242,32 +242,34 @@ Command makeVerifyCommand(CLI::App& tool) {
         ->option_text("FOLDER")
         ->check(suggestFiles({}))
         ->group(group::kInputOutput);
-    command
-        .add_option("--camera", options->cameras, "a camera of the scene; may be given again (default: all)")
+    command.add_option("--camera", options->cameras, "a camera of the scene; may be given again")
         ->option_text("NAME")
+        ->check(showDefault("all"))
         ->expected(1)
         ->take_all()
         ->group(kVerifying);
-    command.add_option("--size", options->size, "of the pictures (default 320x180)")
+    command.add_option("--size", options->size, "of the pictures")
         ->option_text("WxH")
+        ->check(showDefault(options->size))
         ->group(kVerifying);
-    command
-        .add_option("--samples", options->samples,
-                    "paths a pixel of the reference, 2 to 65536 (default 1024)")
+    command.add_option("--samples", options->samples, "paths a pixel of the reference, 2 to 65536")
         ->option_text("N")
+        ->check(showDefault(options->samples))
         ->check(numberFrom(2, 65536))
         ->group(kVerifying);
     command
         .add_option(
             "--reference-noise", options->referenceNoisePercent,
-            "go on with the reference until its noise is at most so much of the error measured (default 33)")
+            "go on with the reference until its noise is at most so much of the error measured")
         ->option_text("PERCENT")
+        ->check(showDefault(options->referenceNoisePercent))
         ->check(numberFrom(0, 1e6))
         ->group(kVerifying);
     command
         .add_option("--max-samples", options->maxSamples,
-                    "with at most so many paths a pixel, 2 to 1048576 (default: 16 times --samples)")
+                    "with at most so many paths a pixel, 2 to 1048576")
         ->option_text("N")
+        ->check(showDefault("16 times --samples"))
         ->check(numberFrom(2, kMostSamples))
         ->group(kVerifying);
     command

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <map>
 #include <memory>
 #include <pfvox/import.hpp>
@@ -55,29 +57,32 @@ void addInputOutputOptions(CLI::App& command, ConvertOptions& options) {
 /// What decides how an asset is built and written.
 void addOctreeOptions(CLI::App& command, ConvertOptions& options) {
     SettingsPatch& patch = options.patch;
-    command
-        .add_flag_function(
-            "--hollow,!--no-hollow", [&patch](std::int64_t count) { patch.hollow = count > 0; },
-            "let voxels that cannot be seen take another material (lossy inside)")
+    const ConvertSettings byDefault;
+    addSwitch(command, "hollow", patch.hollow,
+              "let voxels that cannot be seen take another material (lossy inside)",
+              byDefault.hollow ? "--hollow" : "--no-hollow")
+        ->group(group::kConversion);
+    addSwitch(command, "lod", patch.lod, "add colors for level of detail, at about twice the size",
+              byDefault.build.lod ? "--lod" : "--no-lod")
         ->group(group::kConversion);
     command
-        .add_flag_function(
-            "--lod,!--no-lod", [&patch](std::int64_t count) { patch.lod = count > 0; },
-            "add colours for level of detail, at about twice the size")
-        ->group(group::kConversion);
-    command.add_flag("--archive", options.archive, "compress harder (zstd 9 instead of 3)")
+        .add_flag(
+            "--archive", options.archive,
+            fmt::format("compress harder: zstd {} instead of {}", kArchiveZstdLevel, byDefault.zstdLevel))
         ->group(group::kConversion);
     command
         .add_option_function<std::string>(
             "--profile", [&patch](const std::string& name) { patch.profile = parseProfile(name); },
-            "packed (default): small; resident: raw words, nothing to decode")
+            "packed: small; resident: raw words, nothing to decode")
         ->option_text("NAME")
         ->check(CLI::IsMember({"packed", "resident"}))
+        ->check(showDefault(byDefault.profile == Profile::Packed ? "packed" : "resident"))
         ->group(group::kConversion);
 }
 
 void addConversionOptions(CLI::App& command, ConvertOptions& options) {
     SettingsPatch& patch = options.patch;
+    const ImportSettings byDefault;
     const auto setTrue = [](std::optional<bool>& flag) { return [&flag](std::int64_t) { flag = true; }; };
     command
         .add_option("--settings", options.settingsFile,
@@ -91,35 +96,37 @@ void addConversionOptions(CLI::App& command, ConvertOptions& options) {
         .add_flag_function("--include-hidden", setTrue(patch.includeHidden),
                            "keep hidden layers and nodes, visible")
         ->group(group::kConversion);
-    command.add_option("--frame", patch.frame, "animation frame, 0 or more (default 0)")
+    command.add_option("--frame", patch.frame, "animation frame, 0 or more")
         ->option_text("N")
+        ->check(showDefault(byDefault.frame))
         ->check(numberFrom(0, kMaxFrame))
         ->group(group::kConversion);
-    command
-        .add_option("--voxel-size", patch.voxelSizeMetres,
-                    "edge of a voxel, 1e-6 to 1e6 (default: as in the source, else 0.1)")
-        ->option_text("METRES")
+    command.add_option("--voxel-size", patch.voxelSizeMetres, "edge of a voxel, 1e-6 to 1e6")
+        ->option_text("METERS")
+        ->check(showDefault(fmt::format("as in the source, else {}", kDefaultVoxelSizeMetres)))
         ->check(numberFrom(kMinVoxelSizeMetres, kMaxVoxelSizeMetres))
         ->group(group::kConversion);
     command
         .add_option("--svx-threshold", patch.svxThreshold,
-                    "SVX: density of a solid voxel, 0 to 1 of the largest (default 0.5)")
-        ->option_text("SHARE")
+                    "SVX: density of a solid voxel, 0 to 1 of the largest")
+        ->option_text("FRACTION")
+        ->check(showDefault(byDefault.svx.threshold))
         ->check(numberFrom(0.0, 1.0))
         ->group(group::kConversion);
     command
         .add_option("--vdb-grid", patch.vdbGrids,
-                    "OpenVDB: import this grid; may be given again (default: all)")
+                    "OpenVDB: import this grid and no others but those named so; may be given again")
         ->option_text("NAME")
         ->group(group::kConversion);
     command
-        .add_option("--vdb-threshold", patch.vdbThreshold,
-                    "OpenVDB fog: a voxel is solid above this value (default 0)")
+        .add_option("--vdb-threshold", patch.vdbThreshold, "OpenVDB fog: a voxel is solid above this value")
         ->option_text("VALUE")
+        ->check(showDefault(byDefault.vdb.threshold))
         ->check(numberFrom(-kMaxVdbThreshold, kMaxVdbThreshold))
         ->group(group::kConversion);
-    command.add_option("--vdb-up", patch.vdbUpAxis, "OpenVDB: which axis points up, y or z (default y)")
+    command.add_option("--vdb-up", patch.vdbUpAxis, "OpenVDB: which axis points up, y or z")
         ->option_text("AXIS")
+        ->check(showDefault(byDefault.vdb.upAxis == UpAxis::Y ? "y" : "z"))
         ->transform(CLI::Transformer(std::map<std::string, UpAxis>{{"y", UpAxis::Y}, {"z", UpAxis::Z}}))
         ->group(group::kConversion);
     addOctreeOptions(command, options);

@@ -94,8 +94,9 @@ Command makeExportCommand(CLI::App& tool) {
         ->required()
         ->check(suggestFiles({".vox", ".vdb"}))
         ->group(group::kInputOutput);
-    command.add_option("--format", options->format, "vox or vdb; default: as the output is named, in a folder vox")
+    command.add_option("--format", options->format, "vox or vdb")
         ->option_text("NAME")
+        ->check(showDefault(fmt::format("as the output is named, in a folder {}", kVox)))
         ->check(CLI::IsMember({kVox, kVdb}))
         ->group(group::kInputOutput);
 

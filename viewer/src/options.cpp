@@ -19,6 +19,7 @@ namespace {
 
 constexpr int kUsageError = 2;
 constexpr std::uint32_t kMaxEdge = 16384;
+constexpr std::uint32_t kSamplesWithoutScreenshot = 1;
 
 tools::HelpText helpText() {
     using tools::ExitCode;
@@ -127,18 +128,21 @@ void checkPngName(const std::string& option, const std::filesystem::path& file) 
 void declareLight(CLI::App& app, Options& options, RawOptions& raw) {
     CLI::Option_group* const light = app.add_option_group("Light");
     CLI::Option* const probes =
-        light
-            ->add_option("--probes", options.probes.file,
-                         "Indirect light from this .pf_probe file; default: the one beside the scene, by its name")
+        light->add_option("--probes", options.probes.file, "Indirect light from this .pf_probe file")
             ->type_name("FILE")
+            ->check(tools::showDefault("the one beside the scene, by its name"))
             ->check(tools::suggestFiles({".pf_probe"}));
     light->add_flag("--no-probes", options.probes.none, "Guess indirect light from the sky even if there are probes")
         ->excludes(probes);
-    raw.exposure = light->add_option("--exposure", raw.exposureStops, "Stops brighter, -16 to 16; default 0")
-                       ->check(CLI::Range(-16.0, 16.0))
-                       ->type_name("STOPS");
-    light->add_option("--tonemap", raw.toneMap, namesOf(toneMaps()) + "; default standard")
+    raw.exposure =
+        light->add_option("--exposure", raw.exposureStops, "Stops brighter, -16 to 16")
+            ->check(CLI::Range(-16.0, 16.0))
+            ->check(tools::showDefault(fmt::format("{}, of a window what it was last", raw.exposureStops)))
+            ->type_name("STOPS");
+    light->add_option("--tonemap", raw.toneMap, namesOf(toneMaps()))
         ->type_name("NAME")
+        ->check(tools::showDefault(
+            fmt::format("{}, of a window what it was last", toString(options.picture.toneMap))))
         ->check(tools::suggestWords(wordsOf(toneMaps())));
     light->add_option("--probe", options.picture.atlas.probe, "Views of the atlas: this probe alone, by its index")
         ->check(CLI::Range(0, 1 << 30))
@@ -158,27 +162,35 @@ void declare(CLI::App& app, Options& options, RawOptions& raw) {
     picture->add_option("--screenshot", options.screenshot, "Write a PNG and exit instead of opening a window; needs no window system")
         ->type_name("PNG")
         ->check(tools::suggestFiles({".png"}));
-    picture->add_option("--size", raw.size, "Pixels; default 1280x720, of a window what it was last")->type_name("WxH");
+    picture->add_option("--size", raw.size, "Pixels")
+        ->type_name("WxH")
+        ->check(tools::showDefault(fmt::format("{}x{}, of a window what it was last", options.picture.width,
+                                               options.picture.height)));
     picture
-        ->add_option(
-            "--camera", raw.camera,
-            "Name of a camera, or px,py,pz,tx,ty,tz[,fovY] in metres and degrees; default: the scene's "
-            "first camera, else frames everything")
-        ->type_name("CAMERA");
-    picture->add_option("--view", raw.view, namesOf(viewModes()) + "; default final")
+        ->add_option("--camera", raw.camera,
+                     "Name of a camera, or px,py,pz,tx,ty,tz[,fovY] in meters and degrees")
+        ->type_name("CAMERA")
+        ->check(tools::showDefault("the scene's first camera, else one that frames everything"));
+    picture->add_option("--view", raw.view, namesOf(viewModes()))
         ->type_name("MODE")
+        ->check(tools::showDefault(std::string(toString(options.picture.mode))))
         ->check(tools::suggestWords(wordsOf(viewModes())));
-    raw.samples = picture
-        ->add_option("--samples", options.picture.samplesPerPixel,
-                     "Camera rays for each pixel and frame, 1 to 256; default 4, without --screenshot 1")
-        ->check(CLI::Range(1u, 256u))
-        ->type_name("N");
+    raw.samples =
+        picture
+            ->add_option("--samples", options.picture.samplesPerPixel,
+                         "Camera rays for each pixel and frame, 1 to 256")
+            ->check(CLI::Range(1u, 256u))
+            ->check(tools::showDefault(fmt::format(
+                "{}, without --screenshot {}", options.picture.samplesPerPixel, kSamplesWithoutScreenshot)))
+            ->type_name("N");
 
     picture
-        ->add_option("--frames", options.frames,
-                     "Frames of which the picture is the mean, as in the window; with --camera-path: numbered "
-                     "pictures; without --screenshot: frames that are measured. 1 to 100000, default 1")
+        ->add_option(
+            "--frames", options.frames,
+            "Frames of which the picture is the mean, as in the window; with --camera-path: numbered "
+            "pictures; without --screenshot: frames that are measured. 1 to 100000")
         ->check(CLI::Range(1u, 100000u))
+        ->check(tools::showDefault(options.frames))
         ->type_name("N");
     picture
         ->add_option("--camera-path", options.cameraPath,
@@ -187,17 +199,17 @@ void declare(CLI::App& app, Options& options, RawOptions& raw) {
         ->check(tools::suggestFiles({".json"}));
     picture
         ->add_option("--lod-pixels", options.picture.lodPixels,
-                     "Levels of detail narrower than this stand for what is in them; 0 to 64, 0 = none, default 1")
+                     "Levels of detail narrower than this stand for what is in them; 0 to 64, 0 = none")
         ->check(CLI::Range(0.0, 64.0))
+        ->check(tools::showDefault(options.picture.lodPixels))
         ->type_name("N");
 
     declareLight(app, options, raw);
 
     CLI::Option_group* const device = app.add_option_group("Device");
-    device
-        ->add_option("--device", options.device,
-                     "Index or part of the name; default: a real GPU, else llvmpipe")
-        ->type_name("X");
+    device->add_option("--device", options.device, "Index or part of the name")
+        ->type_name("X")
+        ->check(tools::showDefault("the first real GPU, else the first device"));
     device->add_flag("--list-devices", options.listDevices, "Print the Vulkan devices and exit");
     device->add_flag("--validate", options.validation,
                      "Run with the Vulkan validation layer; its messages are failures");
@@ -229,8 +241,9 @@ void understand(const RawOptions& raw, Options& options) {
         options.toneMap = toneMapFrom(raw.toneMap);
         if (!options.toneMap) throw CLI::ValidationError("--tonemap", noSuch("tone map", raw.toneMap, toneMaps()));
     }
-    options.picture.toneMap = options.toneMap.value_or(ToneMap::Standard);
-    if (options.screenshot.empty() && raw.samples->count() == 0) options.picture.samplesPerPixel = 1;
+    options.picture.toneMap = options.toneMap.value_or(PictureSettings{}.toneMap);
+    if (options.screenshot.empty() && raw.samples->count() == 0)
+        options.picture.samplesPerPixel = kSamplesWithoutScreenshot;
     if (options.listDevices) return;
     if (!options.screenshot.empty()) checkPngName("--screenshot", options.screenshot);
     if (options.screenshot.empty()) {

@@ -95,15 +95,17 @@ struct BakeReport {
     double totalMs = 0.0;  ///< wall clock
     std::uint64_t probes = 0;  ///< in the range of this bake
     std::uint64_t reused = 0;  ///< taken from the journal
-    std::uint64_t active = 0;  ///< relocated ones included
-    std::uint64_t relocated = 0;  ///< moved out of solids
-    std::uint64_t inactive = 0;  ///< without a free place
+    ProbeCounts counts;        ///< of these probes
     std::uint64_t emitterFaces = 0;  ///< exposed faces of emissive voxels
     std::uint64_t cappedRays = 0;  ///< given up by the traversal; 0 in valid data
-    double meanError = 0.0;        ///< relative standard error of I, mean over active probes
-    double maxError = 0.0;  ///< the largest of an active probe
-    double cappedTileShare = 0.0;  ///< tiles that stopped at maxSamples; mean over active probes
-    double meanSamples = 0.0;      ///< paths a texel that sees a surface, of probes baked in this run
+    /// Relative standard error of I, mean over the probes of which it is known; nothing = of none
+    /// (ProbeRecord::error).
+    std::optional<double> meanError;
+    std::optional<double> maxError;         ///< the largest of these
+    std::optional<double> cappedTileShare;  ///< tiles that stopped at maxSamples, mean over active probes;
+                                            ///< nothing = not adaptive
+    std::optional<double>
+        meanSamples;  ///< paths a texel that sees a surface, of probes baked in this run; nothing = none was
     ProximityReport proximity;     ///< uncoveredCells among it
     std::uint64_t fileBytes = 0;  ///< of the output
 };

@@ -110,7 +110,7 @@ class Baker {
     // --- Probes ---
 
     Result<void> bakeAll(ProbeTracer& tracer, ProbeFileWriter& writer) {
-        const ContentKey field = fieldHash(info_, settings_);
+        const ContentKey field = fieldHash(info_);
         Background background;
         report_.probes = info_.range.size();
         records_.resize(info_.range.size());
@@ -169,7 +169,7 @@ class Baker {
             PFVOX_TRY(TracedProbe, maps, tracer.collect(i));
             const std::uint32_t probe = traced[i].index;
             ProbeRecord& record = records_[probe - info_.range.first];
-            record.error = static_cast<float>(maps.tiles.meanError);
+            if (maps.tiles.meanError) record.error = static_cast<float>(*maps.tiles.meanError);
             record.cappedTileShare = static_cast<float>(maps.tiles.cappedTileShare);
             samples_ += maps.tiles.samples;
             surfaceTexels_ += maps.tiles.surfaceTexels;
@@ -246,21 +246,21 @@ class Baker {
     }
 
     void count(std::span<const ProbeRecord> records) {
+        report_.counts = countProbes(records);
+        double errors = 0.0;
+        double capped = 0.0;
+        std::uint64_t judged = 0;
         for (const ProbeRecord& record : records) {
-            if (!record.isActive()) {
-                ++report_.inactive;
-                continue;
-            }
-            ++report_.active;
-            if (record.state == ProbeState::Relocated) ++report_.relocated;
-            const auto error = static_cast<double>(record.error);
-            report_.meanError += error;
-            report_.maxError = std::max(report_.maxError, error);
-            report_.cappedTileShare += static_cast<double>(record.cappedTileShare);
+            capped += static_cast<double>(record.cappedTileShare);
+            if (!record.error) continue;
+            const auto error = static_cast<double>(*record.error);
+            errors += error;
+            report_.maxError = std::max(report_.maxError.value_or(0.0), error);
+            ++judged;
         }
-        if (report_.active == 0) return;
-        report_.meanError /= static_cast<double>(report_.active);
-        report_.cappedTileShare /= static_cast<double>(report_.active);
+        if (judged != 0) report_.meanError = errors / static_cast<double>(judged);
+        if (info_.settings.isAdaptive() && report_.counts.active != 0)
+            report_.cappedTileShare = capped / static_cast<double>(report_.counts.active);
     }
 
     Result<ProximityGrid> makeProximity(const ProbeFileWriter& writer, std::span<const ProbeRecord> records) {

@@ -1,5 +1,6 @@
 #include "bake/content_hash.hpp"
 
+#include <pfvox/assert.hpp>
 #include <pfvox_shaders/shaders.hpp>
 #include <type_traits>
 
@@ -12,7 +13,9 @@ namespace pfvox {
 namespace {
 
 /// Raised when the same inputs give another result for a reason that is not in the shaders.
-constexpr std::uint32_t kBakeVersion = 4;
+constexpr std::uint32_t kBakeVersion = 5;
+/// Raised when the filter does something else to the same maps; files keep it.
+constexpr std::uint32_t kFilterRevision = 2;
 
 class Hasher {
   public:
@@ -94,7 +97,7 @@ ContentKey sceneContentHash(const LoadedScene& scene) {
 ContentKey bakeContentKey(const LoadedScene& scene, const BakeSettings& settings, const gpu::DeviceInfo& device) {
     const ProbeFieldInfo info = bake::fieldInfo(scene, settings, device);
     Hasher hasher;
-    hasher.add(bake::fieldHash(info, settings));
+    hasher.add(bake::fieldHash(info));
     hasher.add(scene.scene.probes.proximityCells).add(std::uint8_t{settings.proximity}).add(std::string_view(settings.toolName));
     return hasher.key();
 }
@@ -113,19 +116,22 @@ std::string deviceName(const gpu::DeviceInfo& device) {
     return device.name + ", " + device.driver;
 }
 
-ContentKey fieldHash(const ProbeFieldInfo& info, const BakeSettings& settings) {
+ContentKey fieldHash(const ProbeFieldInfo& info) {
     Hasher hasher;
     hasher.add(kBakeVersion).add(info.sceneHash).add(info.shaderHash).add(std::string_view(info.deviceName));
     hasher.add(info.grid.start).add(info.grid.step).add(info.grid.counts);
     const ProbeResolution& r = info.resolution;
     hasher.add(r.depth).add(r.light).add(r.irradiance).add(r.moments);
     hasher.add(info.depth.scale).add(info.depth.farMetres);
-    hasher.add(settings.seed).add(settings.minSamples).add(settings.maxSamples);
-    hasher.add(settings.noiseTarget).add(settings.noiseFloor);
-    hasher.add(settings.maxBounces.value_or(0xffffffffu));
-    hasher.add(static_cast<std::uint8_t>(settings.sampling)).add(std::uint8_t{settings.relocate});
-    hasher.add(std::uint8_t{settings.stratified});
-    hasher.add(std::uint8_t{settings.filter});
+    const auto addSetting = [&](const ProbeSetting&, const auto& value) {
+        if constexpr (std::is_arithmetic_v<std::decay_t<decltype(value)>>) {
+            hasher.add(value);
+        } else {
+            PFVOX_ASSERT(value.has_value());  // fieldInfo() knows all of them
+            hasher.add(*value);
+        }
+    };
+    forEachProbeSetting(addSetting, info.settings);
     return hasher.key();
 }
 
@@ -152,8 +158,13 @@ ProbeFieldInfo fieldInfo(const LoadedScene& scene, const BakeSettings& settings,
                      .tracedEdge = tracedEdges(settings.resolution).light,
                      .minSamples = settings.minSamples,
                      .maxSamples = settings.noiseTarget > 0.0f ? settings.maxSamples : settings.minSamples,
-                     .maxBounces = settings.maxBounces.value_or(0),
-                     .noiseTarget = settings.noiseTarget};
+                     .maxBounces = settings.maxBounces.value_or(kUnlimitedBounces),
+                     .noiseTarget = settings.noiseTarget,
+                     .noiseFloor = settings.noiseFloor,
+                     .sampling = static_cast<std::uint32_t>(settings.sampling),
+                     .stratified = settings.stratified,
+                     .relocate = settings.relocate,
+                     .filter = settings.filter ? kFilterRevision : 0};
     info.sceneHash = sceneContentHash(scene);
     info.shaderHash = shaderHash();
     info.deviceName = deviceName(device);

@@ -12,7 +12,7 @@ ContentKey shaderHash();
 std::string deviceName(const gpu::DeviceInfo& device);
 
 /// Of all that the probes of a field have in common: scene, programs, device, sampling, grid, maps.
-ContentKey fieldHash(const ProbeFieldInfo& info, const BakeSettings& settings);
+ContentKey fieldHash(const ProbeFieldInfo& info);
 /// Of one probe: fieldHash and its index.
 ContentKey probeHash(const ContentKey& field, std::uint32_t probe);
 

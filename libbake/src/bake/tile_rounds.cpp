@@ -25,19 +25,20 @@ TileSummary summaryOf(std::span<const shared::TileStatistics> tiles, const TileR
     TileSummary summary;
     double withSurface = 0.0;
     double judged = 0.0;
+    double errors = 0.0;
     for (const shared::TileStatistics& tile : tiles) {
         if (tile.surfaceTexels == 0) continue;
         withSurface += 1.0;
         summary.surfaceTexels += tile.surfaceTexels;
         summary.samples += std::uint64_t{tile.batches} * shared::kBatchSamples * tile.surfaceTexels;
-        if (tile.batches < 2) continue;
-        judged += 1.0;
         const double error = relativeError(tile, rules);
-        summary.meanError += error;
         const bool atEnd = tile.batches >= rules.maxBatches;
         if (rules.noiseTarget > 0.0 && atEnd && error > rules.noiseTarget) summary.cappedTileShare += 1.0;
+        if (tile.batches < 2) continue;
+        judged += 1.0;
+        errors += error;
     }
-    if (judged > 0.0) summary.meanError /= judged;
+    if (judged > 0.0) summary.meanError = errors / judged;
     if (withSurface > 0.0) summary.cappedTileShare /= withSurface;
     return summary;
 }

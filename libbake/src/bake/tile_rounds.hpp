@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "shared/bake.glsl.h"
@@ -26,8 +27,9 @@ std::uint32_t moreBatches(const shared::TileStatistics& tile, const TileRules& r
 
 /// What became of all tiles of a map.
 struct TileSummary {
-    double meanError = 0.0;        ///< relative, over those that see a surface
-    double cappedTileShare = 0.0;  ///< of these, those that stopped at maxBatches before they were quiet
+    std::optional<double>
+        meanError;  ///< relative, over those with a surface and two batches; nothing = there is none
+    double cappedTileShare = 0.0;  ///< of those with a surface: stopped at maxBatches before they were quiet
     std::uint64_t samples = 0;     ///< over all texels that see a surface
     std::uint64_t surfaceTexels = 0;
 };

@@ -1,4 +1,4 @@
-// PF_PROBE 1.0: a regular grid of light-field probes, in memory and on disk. The bytes are described in
+// PF_PROBE 1.1: a regular grid of light-field probes, in memory and on disk. The bytes are described in
 // docs/format-pf_probe.md.
 //
 //     baker -> ProbeData, probe by probe -> [ProbeFileWriter] -> file -> [ProbeFileReader] -> viewer
@@ -23,6 +23,7 @@
 #include <pfvox/math.hpp>
 #include <pfvox/pf_vox.hpp>
 #include <pfvox/probe_grid.hpp>
+#include <pfvox/probe_settings.hpp>
 #include <span>
 #include <string>
 #include <string_view>
@@ -31,7 +32,7 @@
 namespace pfvox {
 
 inline constexpr std::uint16_t kPfProbeVersionMajor = 1;  ///< another one cannot be read
-inline constexpr std::uint16_t kPfProbeVersionMinor = 0;  ///< of what is written; later ones can be read
+inline constexpr std::uint16_t kPfProbeVersionMinor = 1;  ///< of what is written; later ones can be read
 
 /// The maps that a probe may have. Their words are those that the GPU reads.
 enum class ProbeLayer : std::uint8_t {
@@ -93,17 +94,6 @@ inline constexpr std::uint32_t kLightOfDirectSun =
 inline constexpr std::uint32_t kLightOfSpecular = 1u << 4;  ///< paths over metal and glass
 inline constexpr std::uint32_t kKnownLight = (1u << 5) - 1;  ///< all bits that have a meaning
 
-/// How the light was computed.
-struct ProbeBakeSettings {
-    std::uint64_t seed = 0;        ///< of the random numbers
-    std::uint32_t tracedEdge = 0;  ///< edge of the maps that were traced, before any reduction
-    std::uint32_t minSamples = 0;  ///< paths a texel
-    std::uint32_t maxSamples = 0;  ///< equal to minSamples when not adaptive
-    std::uint32_t maxBounces = 0;  ///< 0 = no limit but roulette
-    float noiseTarget = 0.0f;      ///< relative standard error at which a tile stops; 0 = not adaptive
-    bool operator==(const ProbeBakeSettings&) const = default;
-};
-
 /// A half-open range of probe indices.
 struct ProbeRange {
     std::uint32_t first = 0;  ///< inclusive
@@ -144,8 +134,10 @@ struct ProbeRecord {
     glm::vec3 offset{0.0f};                 ///< from the grid point, metres; not 0 only when Relocated
     ProbeState state = ProbeState::Active;  ///< on its grid point, moved, or without a place
     std::uint16_t flags = 0;                ///< none yet: 0
-    float error = 0.0f;                     ///< relative standard error of I, mean over the tiles
-    float cappedTileShare = 0.0f;           ///< share of the tiles that stopped at maxSamples
+    /// Relative standard error of I, mean over the tiles. Nothing = unknown: no tile has two batches of paths
+    /// whose spread could tell, or the probe sees no surface, or is inactive.
+    std::optional<float> error;
+    float cappedTileShare = 0.0f;  ///< share of the tiles that stopped at maxSamples, when that is adaptive
     /// xxh3-64 over offset, state, flags, error, share and the hashes of all layers. Writers compute it and
     /// take no notice of what stands here; readers have checked it. Equal hashes = equal probes.
     std::uint64_t hash = 0;
@@ -153,6 +145,14 @@ struct ProbeRecord {
 
     bool isActive() const { return state != ProbeState::Inactive; }  ///< Whether it has maps.
 };
+
+/// How many probes are in which state.
+struct ProbeCounts {
+    std::uint64_t active = 0;     ///< have maps; relocated ones included
+    std::uint64_t relocated = 0;  ///< of the active ones
+    std::uint64_t inactive = 0;   ///< without a place
+};
+ProbeCounts countProbes(std::span<const ProbeRecord> records);  ///< of these
 
 /// One probe with its maps; a map that the resolution does not have is empty, and so are all of an inactive
 /// one.

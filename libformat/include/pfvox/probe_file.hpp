@@ -41,6 +41,7 @@ class ProbeFileReader {
 
     const ProbeFieldInfo& info() const;                     ///< all but the probes
     ContentKey contentKey() const;                          ///< of what it was made from
+    std::uint16_t versionMinor() const;                     ///< of the format, as the file has it
     std::uint64_t fileBytes() const;                        ///< of the file
     const std::optional<ProximityGrid>& proximity() const;  ///< none in shards
 
@@ -131,8 +132,9 @@ struct ProbeMergeSettings {
 
 /// Joins shards, in any order, to one file. Maps are copied as they are stored, so that the bytes are those
 /// that an unsharded bake would have written. Different devices are allowed and reported
-/// ("probe-merge-devices"). Errors: BadStructure when the shards disagree (each difference is named), or
-/// probes are missing or in two shards (they are named); those of ProbeFileReader::open; FileNotWritable.
+/// ("probe-merge-devices"). Errors: BadStructure when the shards disagree (each difference is named; where
+/// only content keys of one device do, a setting that the files do not keep does), or probes are missing or
+/// in two shards (they are named); those of ProbeFileReader::open; FileNotWritable.
 Result<void> mergeProbeFields(std::span<const std::filesystem::path> shards,
                               const std::filesystem::path& output, const ProbeMergeSettings& settings,
                               const Limits& limits, Diagnostics& diagnostics);

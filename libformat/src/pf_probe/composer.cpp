@@ -6,6 +6,7 @@
 
 #include "io/hash.hpp"
 #include "pf_probe/frame_codec.hpp"
+#include "pf_probe/probe_settings.hpp"
 
 namespace pfvox::probe {
 
@@ -27,10 +28,11 @@ std::uint64_t alignUp(std::uint64_t value) {
 /// Sections one behind the other; DATA comes last and is only announced.
 class HeadWriter {
   public:
-    Result<void> add(std::string_view fourcc, std::uint64_t count, const std::vector<std::byte>& raw) {
+    Result<void> add(std::string_view fourcc, std::uint64_t count, const std::vector<std::byte>& raw,
+                     std::uint32_t flags = layout::kSectionMustUnderstand) {
         PFVOX_TRY(PackedBytes, packed, packBytes(raw, kTableZstdLevel));
         sections_.push_back({.fourcc = name(fourcc),
-                             .flags = layout::kSectionMustUnderstand,
+                             .flags = flags,
                              .codec = packed.codec,
                              .region = layout::kNoRegion,
                              .offset = 0,
@@ -110,6 +112,9 @@ Result<std::vector<std::byte>> composeHead(FilePlan& plan) {
     }
     HeadWriter writer;
     PFVOX_CHECK(writer.add("INFO", 1, infoBytes(plan.info)));
+    // Readers of 1.0 may skip it.
+    if (const auto settings = settingEntries(plan.info.settings); !settings.empty())
+        PFVOX_CHECK(writer.add("BAKE", settings.size(), toBytes(settings), 0));
     PFVOX_CHECK(writer.add("PROB", records.size(), toBytes(records)));
     PFVOX_CHECK(writer.add("INPT", inputs.size(), toBytes(inputs)));
     PFVOX_CHECK(writer.add("FRAM", frames.size(), toBytes(frames)));

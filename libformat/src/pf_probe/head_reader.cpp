@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "io/hash.hpp"
+#include "pf_probe/probe_settings.hpp"
 #include "pf_vox/section_reader.hpp"
 
 namespace pfvox::probe {
@@ -16,6 +17,9 @@ namespace {
 using layout::Section;
 using probe_layout::Frame;
 using probe_layout::Record;
+
+/// More than later versions will have.
+constexpr std::uint64_t kMaxSettings = 1024;
 
 /// The section table and what is checked before any section is read.
 class Container {
@@ -138,6 +142,7 @@ class HeadReading {
         head_.header = container.header();
         PFVOX_CHECK(index(container.sections(), diagnostics));
         PFVOX_CHECK(readInfoSection());
+        PFVOX_CHECK(readSettings());
         PFVOX_CHECK(readProbes());
         PFVOX_CHECK(readFrames());
         PFVOX_CHECK(placeFrames());
@@ -146,8 +151,8 @@ class HeadReading {
     }
 
   private:
-    enum Name : std::size_t { kInfo, kProb, kInpt, kFram, kProx, kData, kNameCount };
-    static constexpr std::array<std::string_view, kNameCount> kNames{"INFO", "PROB", "INPT",
+    enum Name : std::size_t { kInfo, kBake, kProb, kInpt, kFram, kProx, kData, kNameCount };
+    static constexpr std::array<std::string_view, kNameCount> kNames{"INFO", "BAKE", "PROB", "INPT",
                                                                      "FRAM", "PROX", "DATA"};
 
     Result<void> index(const std::vector<Section>& sections, Diagnostics& diagnostics);
@@ -155,6 +160,7 @@ class HeadReading {
     template <class T>
     Result<std::vector<T>> readTable(Name name, std::uint64_t count) const;
     Result<void> readInfoSection();
+    Result<void> readSettings();
     Result<void> readProbes();
     Result<void> readFrames();
     Result<void> placeFrames();
@@ -243,6 +249,14 @@ Result<void> HeadReading::readInfoSection() {
             fmt::format("{} bytes a probe, more than maxMemoryBytes = {}", bytes, limits_.maxMemoryBytes));
     }
     return {};
+}
+
+Result<void> HeadReading::readSettings() {
+    if (!sections_[kBake]) return {};
+    const Section& section = *sections_[kBake];
+    if (section.count > kMaxSettings) return failInSection(section, ErrorCode::BadStructure, "is too long");
+    PFVOX_TRY(const auto, entries, readTable<probe_layout::Setting>(kBake, section.count));
+    return inSection(section, readSettingEntries(entries, head_.info.settings));
 }
 
 Result<void> HeadReading::readProbes() {

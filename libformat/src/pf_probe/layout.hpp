@@ -1,10 +1,11 @@
-// Layout of a PF_PROBE 1.0 file, byte for byte. docs/format-pf_probe.md says the same in words; change both
+// Layout of a PF_PROBE 1.1 file, byte for byte. docs/format-pf_probe.md says the same in words; change both
 // or none. Header and section table are those of PF_VOX (pf_vox/layout.hpp) with another magic.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <pfvox/pf_probe.hpp>
 
 #include "pf_vox/layout.hpp"
@@ -42,6 +43,17 @@ struct Info {
     std::uint32_t toolNameBytes;
 };
 static_assert(sizeof(Info) == 144 && offsetof(Info, seed) == 72 && offsetof(Info, sceneHash) == 104);
+
+/// BAKE, one a setting that INFO does not have, ascending by id (ProbeSetting). Since 1.1.
+struct Setting {
+    std::uint32_t id;
+    std::uint32_t reserved;
+    std::uint64_t value;  ///< a number, 0 or 1, or the bits of a float
+};
+static_assert(sizeof(Setting) == 16 && offsetof(Setting, value) == 8);
+
+/// Record::error where it is unknown, since 1.1: a number, so that readers of 1.0 take it.
+inline constexpr float kUnknownError = std::numeric_limits<float>::max();
 
 /// PROB, one a probe.
 struct Record {

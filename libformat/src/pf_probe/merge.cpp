@@ -28,10 +28,6 @@ std::vector<std::string> differences(const ProbeFieldInfo& a, const ProbeFieldIn
     compare("resolution", a.resolution == b.resolution);
     compare("depth encoding", a.depth == b.depth);
     compare("kinds of light", a.lightContent == b.lightContent);
-    compare("seed", a.settings.seed == b.settings.seed);
-    ProbeBakeSettings settings = b.settings;
-    settings.seed = a.settings.seed;
-    compare("bake settings", a.settings == settings);
     compare("scene", a.sceneHash == b.sceneHash);
     compare("shaders", a.shaderHash == b.shaderHash);
     compare("tool", a.toolName == b.toolName);
@@ -42,6 +38,37 @@ std::string join(const std::vector<std::string>& names) {
     std::string text;
     for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
     return text;
+}
+
+/// "a was baked with --bounces 2, b with --bounces 4"; empty = with the same settings, as far as files know
+/// them.
+std::string otherSettings(const Shard& a, const Shard& b) {
+    std::vector<std::string> first;
+    std::vector<std::string> second;
+    for (ProbeSettingDifference& difference :
+         differencesOf(a.reader.info().settings, b.reader.info().settings)) {
+        first.push_back(std::move(difference.first));
+        second.push_back(std::move(difference.second));
+    }
+    if (first.empty()) return {};
+    return fmt::format("{} was baked with {}, {} with {}", a.file.string(), join(first), b.file.string(),
+                       join(second));
+}
+
+/// Why two shards are not of one bake; empty = they are.
+std::string disagreement(const Shard& a, const Shard& b) {
+    const auto names = differences(a.reader.info(), b.reader.info());
+    std::string why = names.empty() ? "" : "other " + join(names);
+    if (const std::string settings = otherSettings(a, b); !settings.empty())
+        why += (why.empty() ? "" : "; ") + settings;
+    const ContentKey key = a.reader.contentKey();
+    const ContentKey other = b.reader.contentKey();
+    const bool bothKnown = key != ContentKey{} && other != ContentKey{};
+    if (why.empty() && bothKnown && key != other && a.reader.info().deviceName == b.reader.info().deviceName)
+        why =
+            "other content key: a setting or version that the files do not keep is not the same; bake both "
+            "again";
+    return why;
 }
 
 tl::unexpected<Error> refuse(const std::filesystem::path& file, std::string message) {
@@ -57,11 +84,9 @@ Result<std::vector<Shard>> openShards(std::span<const std::filesystem::path> fil
         shards.push_back({file, std::move(reader)});
     }
     for (const Shard& shard : shards) {
-        const auto names = differences(shards.front().reader.info(), shard.reader.info());
-        if (!names.empty()) {
-            return refuse(shard.file, fmt::format("does not belong to {}: other {}",
-                                                  shards.front().file.string(), join(names)));
-        }
+        if (const std::string why = disagreement(shards.front(), shard); !why.empty())
+            return refuse(shard.file,
+                          fmt::format("does not belong to {}: {}", shards.front().file.string(), why));
     }
     std::ranges::stable_sort(shards, {}, [](const Shard& s) { return s.reader.info().range.first; });
     return shards;

@@ -144,6 +144,15 @@ std::uint64_t hashOf(const ProbeData& data) {
     return probe::hashOf(data.record, frames);
 }
 
+ProbeCounts countProbes(std::span<const ProbeRecord> records) {
+    ProbeCounts counts;
+    for (const ProbeRecord& record : records) {
+        ++(record.isActive() ? counts.active : counts.inactive);
+        if (record.state == ProbeState::Relocated) ++counts.relocated;
+    }
+    return counts;
+}
+
 Result<void> checkProbeInfo(const ProbeFieldInfo& info) {
     const auto bad = [](std::string message) { return fail(ErrorCode::BadValue, std::move(message)); };
     const ProbeGrid& grid = info.grid;
@@ -174,6 +183,8 @@ Result<void> checkProbeInfo(const ProbeFieldInfo& info) {
         return bad(fmt::format("unknown kinds of light 0x{:x}", info.lightContent & ~kKnownLight));
     if (!(info.settings.noiseTarget >= 0) || !std::isfinite(info.settings.noiseTarget))
         return bad("the noise target is no number from 0 up");
+    if (const auto floor = info.settings.noiseFloor; floor && !std::isfinite(*floor))
+        return bad("the noise floor is not finite");
     if (info.deviceName.size() > probe::kMaxNameBytes || info.toolName.size() > probe::kMaxNameBytes)
         return bad("a name is too long");
     return {};

@@ -74,6 +74,9 @@ Result<ProbeFileReader> ProbeFileReader::overBytes(std::span<const std::byte> by
 const ProbeFieldInfo& ProbeFileReader::info() const {
     return state_->head.info;
 }
+std::uint16_t ProbeFileReader::versionMinor() const {
+    return state_->head.header.versionMinor;
+}
 ContentKey ProbeFileReader::contentKey() const {
     return {state_->head.header.contentKey};
 }

@@ -10,6 +10,7 @@
 
 #include "io/byte_cursor.hpp"
 #include "io/hash.hpp"
+#include "pf_probe/probe_settings.hpp"
 
 namespace pfvox::probe {
 
@@ -98,7 +99,8 @@ Result<void> checkRecord(const ProbeRecord& record) {
         return bad("has an offset and is not relocated");
     if (record.flags != 0) return bad("unknown flags");
     const auto isShare = [](float v) { return v >= 0 && std::isfinite(v); };
-    if (!isShare(record.error) || !isShare(record.cappedTileShare) || record.cappedTileShare > 1)
+    if (!isShare(record.error.value_or(0.0f)) || !isShare(record.cappedTileShare) ||
+        record.cappedTileShare > 1)
         return bad("error or share of capped tiles are no numbers from 0 up");
     return {};
 }
@@ -120,7 +122,7 @@ std::vector<std::byte> infoBytes(const ProbeFieldInfo& info) {
                                    .tracedEdge = info.settings.tracedEdge,
                                    .minSamples = info.settings.minSamples,
                                    .maxSamples = info.settings.maxSamples,
-                                   .maxBounces = info.settings.maxBounces,
+                                   .maxBounces = bouncesOfInfo(info.settings),
                                    .noiseTarget = info.settings.noiseTarget,
                                    .reserved = 0,
                                    .sceneHash = info.sceneHash.bytes,
@@ -149,8 +151,17 @@ Result<ProbeFieldInfo> readInfo(std::span<const std::byte> bytes) {
         .resolution = {fixed->depthEdge, fixed->lightEdge, fixed->irradianceEdge, fixed->momentsEdge},
         .depth = {fixed->depthScale, fixed->depthFarMetres},
         .lightContent = fixed->lightContent,
-        .settings = {fixed->seed, fixed->tracedEdge, fixed->minSamples, fixed->maxSamples, fixed->maxBounces,
-                     fixed->noiseTarget},
+        .settings = {.seed = fixed->seed,
+                     .tracedEdge = fixed->tracedEdge,
+                     .minSamples = fixed->minSamples,
+                     .maxSamples = fixed->maxSamples,
+                     .maxBounces = bouncesFromInfo(fixed->maxBounces),
+                     .noiseTarget = fixed->noiseTarget,
+                     .noiseFloor = {},
+                     .sampling = {},
+                     .stratified = {},
+                     .relocate = {},
+                     .filter = {}},
         .sceneHash = {fixed->sceneHash},
         .shaderHash = {fixed->shaderHash},
         .deviceName = toText(*device),
@@ -167,19 +178,22 @@ probe_layout::Record toRecord(const ProbeRecord& record) {
             .reserved = 0,
             .flags = record.flags,
             .hash = record.hash,
-            .error = record.error + 0.0f,
+            .error = record.isActive() ? record.error.value_or(probe_layout::kUnknownError) + 0.0f : 0.0f,
             .cappedTileShare = record.cappedTileShare + 0.0f};
 }
 
 Result<ProbeRecord> fromRecord(const probe_layout::Record& record) {
-    const ProbeRecord result{.offset = toVec(record.offset),
-                             .state = static_cast<ProbeState>(record.state),
-                             .flags = record.flags,
-                             .error = record.error,
-                             .cappedTileShare = record.cappedTileShare,
-                             .hash = record.hash};
+    ProbeRecord result{.offset = toVec(record.offset),
+                       .state = static_cast<ProbeState>(record.state),
+                       .flags = record.flags,
+                       .error = {},
+                       .cappedTileShare = record.cappedTileShare,
+                       .hash = record.hash};
     if (record.reserved != 0) return fail(ErrorCode::BadValue, "a reserved field is not 0");
+    // Checked even where it is not taken: an inactive probe has no error.
+    result.error = record.error;
     PFVOX_CHECK(checkRecord(result));
+    if (!result.isActive() || record.error == probe_layout::kUnknownError) result.error.reset();
     return result;
 }
 
