@@ -18,6 +18,7 @@
 #ifndef PFVOX_OCTREE_TRACE_GLSL
 #define PFVOX_OCTREE_TRACE_GLSL
 
+#include "shared/color.glsl.h"
 #include "shared/scene.glsl.h"
 
 layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer WideNodes { WideNode at[]; };
@@ -505,10 +506,6 @@ int octreeLeafLog2(Scene sceneBuffer, Hit hit) {
         same = leafMaterial(model, node, cell) == first;
     }
     return hit.scale - int(model.leafScale) + (same ? 1 : 0);
-}
-
-vec3 linearFromSrgb(vec3 c) {
-    return mix(c / 12.92, pow((c + 0.055) / 1.055, vec3(2.4)), greaterThan(c, vec3(0.04045)));
 }
 
 // Base colour of what was hit, linear.

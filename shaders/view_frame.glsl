@@ -4,10 +4,11 @@
 
 #include "shared/view.glsl.h"
 #include "shared/probe_maths.glsl.h"
+#include "shared/sampling.glsl.h"
 #define PFVOX_TRACE_GROUP_SIZE (kViewGroupEdge * kViewGroupEdge)
 #define PFVOX_TRACE_LOD
 #include "bake_rays.glsl"
-#include "view_encoding.glsl"
+#include "view_ground.glsl"
 #include "view_tone_map.glsl"
 
 layout(local_size_x = kViewGroupEdge, local_size_y = kViewGroupEdge) in;
@@ -39,6 +40,9 @@ vec2 samplePosition(uint index) { return fract(vec2(0.5) + float(index) * vec2(0
 
 uint sampleNumber(ViewParameters view) { return view.firstSample + push.sampleIndex; }
 
+// Of random numbers: neighboring pixels have nothing in common.
+uint pixelKey(uvec2 pixel) { return pcgHash(pixel.x + (pixel.y << 16)); }
+
 Ray cameraRay(ViewParameters view, uvec2 pixel) {
     vec2 within = samplePosition(sampleNumber(view));
     vec2 plane = 2.0 * (vec2(pixel) + within) / vec2(view.width, view.height) - 1.0;
@@ -68,9 +72,14 @@ float startOffset(float voxelMetres, vec3 position) {
     return max(kRayOffsetVoxels * voxelMetres, 4e-7 * maxOf(abs(position)));
 }
 
-SurfacePart partOf(Scene scene, SeenPixel seen, Ray ray) {
+SurfacePart partOfGround(ViewParameters view, vec3 position) {
+    return SurfacePart(position, kGroundNormal, startOffset(groundVoxel(view), position), groundMaterial(), kGroundAlbedo);
+}
+
+SurfacePart partOf(ViewParameters view, Scene scene, SeenPixel seen, Ray ray) {
     SurfacePart part;
     part.position = ray.origin + seen.distance * ray.direction;
+    if (isGround(seen)) return partOfGround(view, part.position);
     part.normal = unpackWideNormal(seen.normal);
     part.offset = startOffset(seen.voxelMetres, part.position);
     part.material = Materials(scene.header.materials).at[seen.material];
@@ -89,9 +98,6 @@ void writeColour(ViewParameters view, uint index, vec3 colour, float distance) {
     Colours(push.colours).at[index] =
         vec4(before.rgb + colour / float(view.samplesPerPixel), min(before.w, distance));
 }
-
-// Of a colour that is meant for the screen as it is: the encoding at the end is taken back.
-vec3 linearFromDisplay(vec3 c) { return pow(c, vec3(2.2)); }
 
 // ---- Sums: a group adds up, then to memory ----
 

@@ -12,7 +12,7 @@ struct Seen {
 };
 
 // Goes on behind glass until something stops the ray. One body of glass counts once.
-Seen look(Scene scene, Ray ray, inout RayCounts counts) {
+Seen look(ViewParameters view, Scene scene, Ray ray, inout RayCounts counts) {
     Seen seen;
     seen.pixel = SeenPixel(kInfinity, 0u, 0u, 0u, 0.0, 0u, packLight(vec3(1.0)), 0u);
     seen.shine = SeenShine(vec3(0.0), kInfinity, 0u, 0u, 0.0, 0u);
@@ -21,6 +21,13 @@ Seen look(Scene scene, Ray ray, inout RayCounts counts) {
     uint lastGlass = kNoMaterial;
     for (uint i = 0u; i <= kMaxGlassSteps; ++i) {
         Hit hit = castRay(scene, ray, counts);
+        float ground = groundAlong(view, ray);
+        if (ground < hit.t) {
+            float distance = length(ray.origin + ground * ray.direction - camera);
+            seen.pixel = SeenPixel(distance, kGroundMaterial, packWideNormal(kGroundNormal), 0u, groundVoxel(view), 0u,
+                                   packLight(through), 0u);
+            return seen;
+        }
         if (hit.instance == kNoInstance) break;
         Surface surface = surfaceOf(scene, ray, hit);
         MaterialRecord material = materialOf(scene, surface);
@@ -50,11 +57,12 @@ void main() {
     beginCounting();
     if (pixel.inside) {
         RayCounts counts = RayCounts(0u, TraceStatistics(0u, 0u));
-        Seen seen = look(Scene(push.scene), cameraRay(view, pixel.at), counts);
+        Seen seen = look(view, Scene(push.scene), cameraRay(view, pixel.at), counts);
         SeenPixels(push.seen).at[pixel.index] = seen.pixel;
         if ((push.shine.x | push.shine.y) != 0u) SeenShines(push.shine).at[pixel.index] = seen.shine;
         count(counts.trace);
-        count(kCountHits, uint(seen.pixel.distance < kInfinity || seen.shine.distance < kInfinity));
+        bool metVoxel = seen.pixel.distance < kInfinity && !isGround(seen.pixel);
+        count(kCountHits, uint(metVoxel || seen.shine.distance < kInfinity));
     }
     endCounting();
 }

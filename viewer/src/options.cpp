@@ -95,6 +95,8 @@ struct RawOptions {
     std::string view;
     std::string toneMap;
     double exposureStops = 0.0;
+    bool hasGround = false;
+    CLI::Option* ground = nullptr;
     CLI::Option* exposure = nullptr;
     CLI::Option* samples = nullptr;
 };
@@ -132,8 +134,13 @@ void declareLight(CLI::App& app, Options& options, RawOptions& raw) {
                          "Indirect light from this .pf_probe file; default: the one beside the scene, by its name")
             ->type_name("FILE")
             ->check(tools::suggestFiles({".pf_probe"}));
-    light->add_flag("--no-probes", options.probes.none, "Guess indirect light from the sky even if there are probes")
+    light
+        ->add_flag("--no-probes", options.probes.none,
+                   "Guess indirect light from what is near by even if there are probes")
         ->excludes(probes);
+    raw.ground = light->add_flag(
+        "--ground,!--no-ground", raw.hasGround,
+        "A ground under what is shown, with its shadow; default: under a single model, not in scenes");
     raw.exposure = light->add_option("--exposure", raw.exposureStops, "Stops brighter, -16 to 16; default 0")
                        ->check(CLI::Range(-16.0, 16.0))
                        ->type_name("STOPS");
@@ -225,6 +232,7 @@ void understand(const RawOptions& raw, Options& options) {
         options.picture.mode = *mode;
     }
     if (raw.exposure->count() != 0) options.exposureStops = raw.exposureStops;
+    if (raw.ground->count() != 0) options.ground = raw.hasGround;
     if (!raw.toneMap.empty()) {
         options.toneMap = toneMapFrom(raw.toneMap);
         if (!options.toneMap) throw CLI::ValidationError("--tonemap", noSuch("tone map", raw.toneMap, toneMaps()));
