@@ -18,6 +18,7 @@
 #ifndef PFVOX_OCTREE_TRACE_GLSL
 #define PFVOX_OCTREE_TRACE_GLSL
 
+#include "shared/color.glsl.h"
 #include "shared/scene.glsl.h"
 
 layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer WideNodes { WideNode at[]; };
@@ -546,10 +547,6 @@ int octreeLeafLog2(Scene sceneBuffer, Hit hit) {
 
 // Where rays leave the surface.
 vec3 startOf(Surface surface) { return surface.position + surface.lift; }
-
-vec3 linearFromSrgb(vec3 c) {
-    return mix(c / 12.92, pow((c + 0.055) / 1.055, vec3(2.4)), greaterThan(c, vec3(0.04045)));
-}
 
 // Base colour of what was hit, linear.
 vec3 albedoOf(Scene scene, Surface surface) {

@@ -29,8 +29,8 @@ vec3 texelColour(ViewParameters view, ProbeFieldRecord field, ProbeEntry probe, 
     uvec2 texel = min(uvec2(at * float(field.depthEdge)), uvec2(field.depthEdge - 1u));
     uint word = ProbeWords(probe.depthNormal).at[texel.x + field.depthEdge * texel.y];
     if (isMiss(word)) return kNothingThere;
-    if (view.mode == kViewAtlasNormals) return linearFromDisplay(0.5 + 0.5 * normalOf(word));
-    return linearFromDisplay(vec3(1.0 - float(depthCodeOf(word)) / float(kMaxDepthCode)));
+    if (view.mode == kViewAtlasNormals) return linearFromSrgb(0.5 + 0.5 * normalOf(word));
+    return linearFromSrgb(vec3(1.0 - float(depthCodeOf(word)) / float(kMaxDepthCode)));
 }
 
 // Stripes where a probe is inactive: it has no maps.

@@ -4,10 +4,11 @@
 
 #include "shared/view.glsl.h"
 #include "shared/probe_maths.glsl.h"
+#include "shared/sampling.glsl.h"
 #define PFVOX_TRACE_GROUP_SIZE (kViewGroupEdge * kViewGroupEdge)
 #define PFVOX_TRACE_LOD
 #include "bake_rays.glsl"
-#include "view_encoding.glsl"
+#include "view_ground.glsl"
 #include "view_tone_map.glsl"
 
 layout(local_size_x = kViewGroupEdge, local_size_y = kViewGroupEdge) in;
@@ -39,6 +40,9 @@ vec2 samplePosition(uint index) { return fract(vec2(0.5) + float(index) * vec2(0
 
 uint sampleNumber(ViewParameters view) { return view.firstSample + push.sampleIndex; }
 
+// Of random numbers: neighboring pixels have nothing in common.
+uint pixelKey(uvec2 pixel) { return pcgHash(pixel.x + (pixel.y << 16)); }
+
 Ray cameraRay(ViewParameters view, uvec2 pixel) {
     vec2 within = samplePosition(sampleNumber(view));
     vec2 plane = 2.0 * (vec2(pixel) + within) / vec2(view.width, view.height) - 1.0;
@@ -52,41 +56,54 @@ vec3 skyRadiance(ViewParameters view, vec3 direction) {
 
 // ---- What is handed from pass to pass ----
 
-// Of a level of detail, what it stands for: rays start as much farther off it.
-float cellMetres(Surface surface) {
-    return surface.lodColor != 0u ? exp2(float(surface.leafLog2)) * surface.voxelMetres : surface.voxelMetres;
+// Extent of a cell along its normal, as the upper half of a float, and where its rays start, by components of five bits in parts
+// of two ray offsets. Of a level of detail, what it stands for: rays start as much farther off it.
+uint packCell(float metres, vec3 lift) {
+    uvec3 parts = uvec3(ivec3(round(clamp(0.5 * lift, -1.0, 1.0) * 15.0))) & 31u;
+    return (floatBitsToUint(metres) + 0x8000u & 0xffff0000u) | parts.x | parts.y << 5 | parts.z << 10;
 }
-uint packLift(Surface surface) {
-    return packSnorm4x8(vec4(surface.lift / (2.0 * rayOffset(surface.voxelMetres, surface.position)), 0.0));
+uint packCell(Surface surface) {
+    float metres = surface.lodColor != 0u ? exp2(float(surface.leafLog2)) * surface.voxelMetres : surface.voxelMetres;
+    return packCell(metres, surface.lift / rayOffset(surface.voxelMetres, surface.position));
 }
-vec3 liftedFrom(vec3 position, uint lift, float cellMetres) {
-    return position + 2.0 * rayOffset(cellMetres, position) * unpackSnorm4x8(lift).xyz;
+float metresOfCell(uint cell) { return uintBitsToFloat(cell & 0xffff0000u); }
+vec3 startOfRays(vec3 position, uint cell) {
+    vec3 parts = vec3(bitfieldExtract(int(cell), 0, 5), bitfieldExtract(int(cell), 5, 5), bitfieldExtract(int(cell), 10, 5));
+    return position + 2.0 / 15.0 * rayOffset(metresOfCell(cell), position) * parts;
 }
 
 // A point on a surface as passes hand it on.
 struct SurfacePart {
     vec3 position;
     vec3 normal;
-    vec3 start;    // of rays that leave it
-    float spread;  // edge of a level of detail, metres; else 0
+    vec3 start;        // of rays that leave it
+    float cellMetres;  // extent of the voxel or level of detail along the normal
+    float spread;      // edge of a level of detail, metres; else 0
     MaterialRecord material;
     vec3 albedo;
 };
 
-SurfacePart partOf(Scene scene, SeenPixel seen, Ray ray) {
+SurfacePart partOfGround(ViewParameters view, vec3 position) {
+    vec3 start = position + rayOffset(groundVoxel(view), position) * kGroundNormal;
+    return SurfacePart(position, kGroundNormal, start, groundVoxel(view), 0.0, groundMaterial(), kGroundAlbedo);
+}
+
+SurfacePart partOf(ViewParameters view, Scene scene, SeenPixel seen, Ray ray) {
     SurfacePart part;
     part.position = ray.origin + seen.distance * ray.direction;
+    if (isGround(seen)) return partOfGround(view, part.position);
     part.normal = unpackWideNormal(seen.normal);
-    part.start = liftedFrom(part.position, seen.lift, seen.cellMetres);
-    part.spread = seen.lodColor != 0u ? seen.cellMetres : 0.0;
+    part.start = startOfRays(part.position, seen.cell);
+    part.cellMetres = metresOfCell(seen.cell);
+    part.spread = seen.lodColor != 0u ? part.cellMetres : 0.0;
     part.material = Materials(scene.header.materials).at[seen.material];
     part.albedo = seen.lodColor != 0u ? linearFromSrgb(unpackUnorm4x8(seen.lodColor).rgb) : part.material.albedo;
     return part;
 }
 
 SurfacePart partOf(Scene scene, Surface surface) {
-    return SurfacePart(surface.position, surface.normal, startOf(surface), 0.0, materialOf(scene, surface),
-                       albedoOf(scene, surface));
+    return SurfacePart(surface.position, surface.normal, startOf(surface), surface.voxelMetres, 0.0,
+                       materialOf(scene, surface), albedoOf(scene, surface));
 }
 
 // The colour of one sample, for the screen but for its encoding; `distance` is that of the nearest sample in the end.
@@ -95,9 +112,6 @@ void writeColour(ViewParameters view, uint index, vec3 colour, float distance) {
     Colours(push.colours).at[index] =
         vec4(before.rgb + colour / float(view.samplesPerPixel), min(before.w, distance));
 }
-
-// Of a colour that is meant for the screen as it is: the encoding at the end is taken back.
-vec3 linearFromDisplay(vec3 c) { return pow(c, vec3(2.2)); }
 
 // ---- Sums: a group adds up, then to memory ----
 

@@ -13,16 +13,21 @@ vec3 colourOf(ViewParameters view, Ray ray, SeenPixel seen, uint index) {
         if (view.mode != kViewFinal) return kBackground;
         return finalColour(view, ray, seen, index, skyRadiance(view, ray.direction));
     }
-    SurfacePart part = partOf(Scene(push.scene), seen, ray);
-    ProbeLight light = indirectAt(view, part);
+    SurfacePart part = partOf(view, Scene(push.scene), seen, ray);
+    vec3 indirect = unpackLight(seen.ambient);
 #ifdef PFVOX_VIEW_PROBES
-    count(kCountTiers + light.tier, 1u);
-    count(kCountWithoutValue, uint(light.tier == kTierNone));
-    if (view.mode == kViewIndirect) return toneMap(view.toneMap, view.exposure * light.indirect);
-    if (view.mode == kViewTiers)
-        return light.tier == kTierNone ? vec3(1.0, 0.0, 1.0) : tierColour(light.tier) * faceShade(part.normal);
+    if (!isGround(seen)) {
+        ProbeLight light = indirectAt(view, part);
+        count(kCountTiers + light.tier, 1u);
+        count(kCountWithoutValue, uint(light.tier == kTierNone));
+        if (view.mode == kViewIndirect) return toneMap(view.toneMap, view.exposure * light.indirect);
+        if (view.mode == kViewTiers)
+            return light.tier == kTierNone ? vec3(1.0, 0.0, 1.0) : tierColour(light.tier) * faceShade(part.normal);
+        indirect = light.indirect;
+    }
 #endif
-    vec3 radiance = radianceFrom(view, part, -ray.direction, unpackLight(seen.sun), light.indirect);
+    vec3 radiance = radianceFrom(view, part, -ray.direction, unpackLight(seen.sun), indirect);
+    if (isGround(seen)) radiance = mix(skyRadiance(view, ray.direction), radiance, groundShare(view, part.position));
     return finalColour(view, ray, seen, index, radiance);
 }
 

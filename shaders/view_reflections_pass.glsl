@@ -6,11 +6,28 @@
 
 const float kMirrorAlpha = 1e-3;  // sharper lobes reflect like mirrors
 
-vec3 radianceAlong(ViewParameters view, Scene scene, Ray ray, inout RayCounts counts) {
+vec3 indirectOf(ViewParameters view, Scene scene, SurfacePart part, uint key, inout RayCounts counts) {
+#ifdef PFVOX_VIEW_PROBES
+    return indirectAt(view, part).indirect;
+#else
+    return guessedIndirect(view, scene, part, key, counts);
+#endif
+}
+
+vec3 groundRadiance(ViewParameters view, Scene scene, Ray ray, float distance, inout RayCounts counts) {
+    SurfacePart part = partOfGround(view, ray.origin + distance * ray.direction);
+    vec3 indirect = ambientRadiance(view, part.normal);
+    vec3 radiance = radianceFrom(view, part, -ray.direction, sunShare(view, scene, part, counts), indirect);
+    return mix(skyRadiance(view, ray.direction), radiance, groundShare(view, part.position));
+}
+
+vec3 radianceAlong(ViewParameters view, Scene scene, Ray ray, uint key, inout RayCounts counts) {
     vec3 through = vec3(1.0);
     uint lastGlass = kNoMaterial;
     for (uint i = 0u; i < kMaxGlassSteps; ++i) {
         Hit hit = castRay(scene, ray, counts);
+        float ground = groundAlong(view, ray);
+        if (ground < hit.t) return through * groundRadiance(view, scene, ray, ground, counts);
         if (hit.instance == kNoInstance) return through * skyRadiance(view, ray.direction);
         Surface surface = surfaceOf(scene, ray, hit);
         MaterialRecord material = materialOf(scene, surface);
@@ -18,7 +35,7 @@ vec3 radianceAlong(ViewParameters view, Scene scene, Ray ray, inout RayCounts co
             SurfacePart part = partOf(scene, surface);
             if (part.material.type == kMaterialMetal) part.material.type = 0u;  // what it mirrors is about as bright
             vec3 sun = sunShare(view, scene, part, counts);
-            vec3 indirect = indirectAt(view, part).indirect;
+            vec3 indirect = indirectOf(view, scene, part, key, counts);
             return through * radianceFrom(view, part, -ray.direction, sun, indirect);
         }
         if (entersGlass(surface, lastGlass))
@@ -54,29 +71,29 @@ vec2 pixelNoise(ViewParameters view, uvec2 pixel) {
     return fract(start + float(sampleNumber(view)) * vec2(0.7548776662, 0.5698402910));
 }
 
-vec3 surfaceShine(ViewParameters view, Scene scene, Ray ray, SeenPixel seen, vec2 u, inout RayCounts counts) {
-    SurfacePart part = partOf(scene, seen, ray);
+vec3 surfaceShine(ViewParameters view, Scene scene, Ray ray, SeenPixel seen, uvec2 pixel, inout RayCounts counts) {
+    SurfacePart part = partOf(view, scene, seen, ray);
     Lobes lobes = lobesOf(part.material, part.albedo, part.normal, -ray.direction);
     if (lobes.specular <= 0.0) return vec3(0.0);
     vec3 weight;
-    vec3 direction = mirrored(lobes, part.material.roughness, part.normal, -ray.direction, u, weight);
+    vec3 direction = mirrored(lobes, part.material.roughness, part.normal, -ray.direction, pixelNoise(view, pixel), weight);
     if (maxOf(weight) < 1e-3) return vec3(0.0);
     Ray away = Ray(part.start, kInfinity, direction, 0.0);
-    return unpackLight(seen.through) * weight * radianceAlong(view, scene, away, counts);
+    return unpackLight(seen.through) * weight * radianceAlong(view, scene, away, joinHash(pixelKey(pixel), 3u), counts);
 }
 
-vec3 glassShine(ViewParameters view, Scene scene, Ray ray, SeenShine shine, inout RayCounts counts) {
-    SeenPixel glass = SeenPixel(shine.distance, shine.material, shine.normal, 0u, shine.cellMetres, 0u, 0u, shine.lift);
-    SurfacePart part = partOf(scene, glass, ray);
+vec3 glassShine(ViewParameters view, Scene scene, Ray ray, SeenShine shine, uvec2 pixel, inout RayCounts counts) {
+    SeenPixel glass = SeenPixel(shine.distance, shine.material, shine.normal, 0u, shine.cell, 0u, 0u, 0u);
+    SurfacePart part = partOf(view, scene, glass, ray);
     float reflectance = glassReflectance(part.material, abs(dot(part.normal, ray.direction)));
     vec3 radiance = vec3(0.0);
     if (reflectance > 1e-3) {
         Ray away = Ray(part.start, kInfinity, reflect(ray.direction, part.normal), 0.0);
-        radiance += reflectance * radianceAlong(view, scene, away, counts);
+        radiance += reflectance * radianceAlong(view, scene, away, joinHash(pixelKey(pixel), 4u), counts);
     }
     if (part.material.transparency < 1.0) {
         vec3 sun = sunShare(view, scene, part, counts);
-        vec3 indirect = indirectAt(view, part).indirect;
+        vec3 indirect = indirectOf(view, scene, part, joinHash(pixelKey(pixel), 5u), counts);
         radiance += (1.0 - reflectance) * radianceFrom(view, part, -ray.direction, sun, indirect);
     }
     return radiance;
@@ -94,8 +111,8 @@ void main() {
         RayCounts counts = RayCounts(0u, TraceStatistics(0u, 0u));
         vec3 added = vec3(0.0);
         if (seen.distance < kInfinity)
-            added += surfaceShine(view, scene, ray, seen, pixelNoise(view, pixel.at), counts);
-        if (kHasGlass != 0u && shine.distance < kInfinity) added += glassShine(view, scene, ray, shine, counts);
+            added += surfaceShine(view, scene, ray, seen, pixel.at, counts);
+        if (kHasGlass != 0u && shine.distance < kInfinity) added += glassShine(view, scene, ray, shine, pixel.at, counts);
         SeenShines(push.shine).at[pixel.index].added = added;
         count(counts.trace);
         count(kCountReflectionRays, counts.rays);

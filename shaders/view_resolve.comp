@@ -9,7 +9,7 @@
 #extension GL_EXT_buffer_reference_uvec2 : require
 
 #include "shared/view.glsl.h"
-#include "view_encoding.glsl"
+#include "shared/color.glsl.h"
 
 layout(local_size_x = kViewGroupEdge, local_size_y = kViewGroupEdge) in;
 
@@ -100,5 +100,5 @@ void main() {
     float frames = floor(before.w + 0.5) + 1.0;
     vec3 colour = mix(before.rgb, frame.rgb, 1.0 / frames);
     if ((push.history.x | push.history.y) != 0u) History(push.history).at[index] = vec4(colour, frames);
-    Pixels(push.pixels).rgba[index] = packUnorm4x8(vec4(srgbFromLinear(colour), 1.0));
+    Pixels(push.pixels).rgba[index] = packUnorm4x8(vec4(srgbFromLinear(clamp(colour, vec3(0.0), vec3(1.0))), 1.0));
 }

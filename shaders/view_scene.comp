@@ -17,8 +17,8 @@ vec3 surfaceColour(ViewParameters view, Scene scene, Ray ray, Hit hit) {
     Surface surface = surfaceOf(scene, ray, hit);
     switch (view.mode) {
         case kViewAlbedo: return albedoOf(scene, surface);
-        case kViewNormals: return linearFromDisplay(0.5 + 0.5 * surface.normal);
-        case kViewMaterial: return linearFromDisplay(indexColour(surface.material));
+        case kViewNormals: return linearFromSrgb(0.5 + 0.5 * surface.normal);
+        case kViewMaterial: return linearFromSrgb(indexColour(surface.material));
         case kViewDepth: return heatColour(1.0 - float(octreeLeafLog2(scene, hit)) / 7.0);
         default: return cellColour(surface) * faceShade(surface.normal);
     }

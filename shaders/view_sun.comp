@@ -16,7 +16,7 @@ void main() {
         if (seen.distance < kInfinity && dot(normal, -view.sunDirection) > 0.0) {
             Ray ray = cameraRay(view, pixel.at);
             vec3 position = ray.origin + seen.distance * ray.direction;
-            vec3 origin = liftedFrom(position, seen.lift, seen.cellMetres);
+            vec3 origin = startOfRays(position, seen.cell);
             RayCounts counts = RayCounts(0u, TraceStatistics(0u, 0u));
             vec3 share = transmittance(Scene(push.scene), Ray(origin, kInfinity, -view.sunDirection, 0.0), counts);
             SeenPixels(push.seen).at[pixel.index].sun = packLight(share);

@@ -1,6 +1,6 @@
 // What a picture is made from: read by the view_*.comp programs, written by the viewer.
 //
-//     light:       geometry -> SeenPixel -> sun -> reflections -> light -> colour, once for each sample of a pixel
+//     light:       geometry -> SeenPixel -> sun -> ambient -> reflections -> light -> colour, once for each sample of a pixel
 //     inspection:  scene, field or atlas -> colour
 //     then         colours -> resolve -> pixels
 #ifndef PFVOX_SHARED_VIEW_GLSL_H
@@ -52,14 +52,20 @@ PFVOX_STRUCT(ViewParameters) {
     uint atlasCount;      // probes shown
     uint atlasColumns;
     uint atlasCell;       // edge of one map, pixels, with a gap of one
-    uint reserved0;
-    uint reserved1;
+    uint ambientRays;     // of each sample, where no probes give the indirect light
+    float ambientReach;   // metres; what is farther away does not hide the sky
+    vec3 groundMiddle;    // metres
+    float groundRadius;   // 0 = there is no ground
+    uvec2 emitters;       // EmitterFace[]
+    uint emitterCount;
+    float emitterPower;   // as in BakeScene
 };
-PFVOX_SIZE(ViewParameters, 176);
+PFVOX_SIZE(ViewParameters, 208);
 PFVOX_OFFSET(ViewParameters, cameraUp, 48);
 PFVOX_OFFSET(ViewParameters, sunIrradiance, 80);
 PFVOX_OFFSET(ViewParameters, skyGround, 128);
 PFVOX_OFFSET(ViewParameters, field, 144);
+PFVOX_OFFSET(ViewParameters, emitters, 192);
 
 PFVOX_CONSTANT(uint, kToneMapStandard, 0u);
 PFVOX_CONSTANT(uint, kToneMapLinear, 1u);
@@ -67,16 +73,19 @@ PFVOX_CONSTANT(uint, kToneMapReinhard, 2u);
 PFVOX_CONSTANT(uint, kToneMapAces, 3u);
 PFVOX_CONSTANT(uint, kToneMapNeutral, 4u);
 
+// SeenPixel::material of the ground: no material of the scene.
+PFVOX_CONSTANT(uint, kGroundMaterial, 0xfffffffeu);
+
 // What a camera ray sees behind all glass.
 PFVOX_STRUCT(SeenPixel) {
     float distance;  // metres; 1e30 = sky
     uint material;
     uint normal;     // octahedral, two snorm16
     uint lodColor;   // sRGB of a level of detail; 0 = the material's
-    float cellMetres;  // extent along the normal of what was hit: a voxel or a level of detail
+    uint cell;       // of what was hit, a voxel or a level of detail: see packCell
     uint sun;        // share of the sun that arrives, R11G11B10F
     uint through;    // share that glass in front lets through, R11G11B10F
-    uint lift;       // from the surface to where its rays start: parts of two ray offsets, snorm8 each
+    uint ambient;    // I as rays guess it, R11G11B10F; where probes do not say it
 };
 PFVOX_SIZE(SeenPixel, 32);
 
@@ -86,8 +95,8 @@ PFVOX_STRUCT(SeenShine) {
     float distance;     // of the glass; 1e30 = none
     uint material;
     uint normal;        // as in SeenPixel
-    float cellMetres;
-    uint lift;          // as in SeenPixel
+    uint cell;          // as in SeenPixel
+    uint reserved0;
 };
 PFVOX_SIZE(SeenShine, 32);
 
@@ -101,6 +110,7 @@ PFVOX_CONSTANT(uint, kCountWithoutValue, 5u);  // lookups without a tier, or not
 PFVOX_CONSTANT(uint, kCountTiers, 6u);         // five, by kTier...
 PFVOX_CONSTANT(uint, kCountFieldStates, 11u);  // three, by kField...
 PFVOX_CONSTANT(uint, kCountFieldAgrees, 14u);  // the octree says the same
+PFVOX_CONSTANT(uint, kCountAmbientRays, 15u);
 PFVOX_CONSTANT(uint, kViewCounterCount, 16u);
 
 PFVOX_STRUCT(ViewPushConstants) {

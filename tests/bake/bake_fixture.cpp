@@ -5,11 +5,12 @@
 
 #include "shared/probe_maths.glsl.h"
 
+#include "shared/color.glsl.h"
+
 namespace pfvox::test {
 
 double linearOf(std::uint8_t byte) {
-    const double c = byte / 255.0;
-    return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
+    return shared::linearFromSrgb(byte / 255.0);
 }
 
 Material grey(std::uint8_t byte, double radiance) {

@@ -66,6 +66,7 @@ const std::vector<Row>& rows() {
         {"pfview", "", "--frames", {}, kPicture},
         {"pfview", "", "--lod-pixels", {}, kPicture},
         {"pfview", "", "--probes", {"--probes", "scene.pf_probe"}, kPicture},
+        {"pfview", "", "--ground", {"--no-ground"}, kPicture},
         {"pfview", "", "--exposure", {}, kPicture},
         {"pfview", "", "--tonemap", {}, kPicture},
         {"pfview", "", "--device", {"--device", "0"}, kPicture},

@@ -80,6 +80,9 @@ TEST_F(LightPicture, WithoutProbesTheSkyIsGuessedAndProbeViewsAreFinal) {
     const Picture guessed = drawn(false, statistics);
     EXPECT_TRUE(matchesGolden(guessed, "hall-without-probes"));
     EXPECT_EQ(statistics.tiers, PictureStatistics{}.tiers);
+    EXPECT_GT(statistics.ambientRays, 0u);
+    drawn(true, statistics);
+    EXPECT_EQ(statistics.ambientRays, 0u) << "with probes nothing is guessed, and no time is spent on it";
     settings.mode = ViewMode::Tiers;
     EXPECT_TRUE(drawn(false).pixels == guessed.pixels);
 }

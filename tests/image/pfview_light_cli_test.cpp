@@ -51,6 +51,39 @@ TEST_F(PfviewLight, TakesTheProbesBesideTheScene) {
     EXPECT_NE(contentOf(folder_ / "a.png"), contentOf(folder_ / "b.png"));
 }
 
+TEST_F(PfviewLight, SaysThatLightWithoutProbesIsAnApproximation) {
+    EXPECT_EQ(statistics("--screenshot a.png")["indirect"], "approximation");
+    EXPECT_THAT(
+        run("hall.toml --size 8x8 --screenshot a.png").err,
+        HasSubstr("approximation from what is near by; bake it: probe-bake 'hall.toml' -o 'hall.pf_probe'"));
+    EXPECT_TRUE(statistics("--screenshot a.png --view normals")["indirect"].is_null());
+    EXPECT_THAT(run("hall.toml --size 8x8 --screenshot a.png --view normals").err, IsEmpty());
+    addProbes();
+    const json lit = statistics("--screenshot a.png");
+    EXPECT_EQ(lit["indirect"], "probes");
+    EXPECT_EQ(lit["picture"]["ambientRays"], 0);
+}
+
+TEST_F(PfviewLight, APictureHasSoManyRaysForAPixelHoweverItIsMade) {
+    const auto raysOf = [&](const std::string& how) {
+        return statistics("--screenshot a.png " + how)["picture"]["ambientRays"].get<double>();
+    };
+    const double rays = raysOf("");
+    EXPECT_NEAR(raysOf("--samples 1"), rays, 0.02 * rays);
+    EXPECT_NEAR(raysOf("--samples 2 --frames 8"), rays, 0.02 * rays);
+}
+
+TEST_F(PfviewLight, AModelAloneStandsOnAGroundAndASceneDoesNot) {
+    EXPECT_EQ(statistics("--screenshot scene.png")["picture"]["ground"], false);
+    EXPECT_EQ(statistics("--screenshot stands.png --ground")["picture"]["ground"], true);
+    EXPECT_NE(contentOf(folder_ / "scene.png"), contentOf(folder_ / "stands.png"));
+    const std::string model = "hall.pf_vox --size 64x40 --camera 9,4,9,2.7,1,1 --screenshot ";
+    for (const char* const how : {"model.png", "off.png --no-ground", "on.png --ground"})
+        EXPECT_EQ(run(model + how).exitCode, 0);
+    EXPECT_EQ(contentOf(folder_ / "model.png"), contentOf(folder_ / "on.png"));
+    EXPECT_NE(contentOf(folder_ / "model.png"), contentOf(folder_ / "off.png"));
+}
+
 TEST_F(PfviewLight, TakesNamedProbesAndTheSceneOfAProbeFile) {
     addProbes("other.pf_probe");
     EXPECT_EQ(statistics("--screenshot a.png --probes other.pf_probe")["probes"]["file"], "other.pf_probe");

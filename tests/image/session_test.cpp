@@ -103,6 +103,30 @@ TEST_F(SessionTest, PickTellsVoxelMaterialModelAndInstance) {
     EXPECT_FALSE(session->pick()) << "the sky";
 }
 
+TEST_F(SessionTest, AModelAloneStandsOnAGroundThatNobodyPicks) {
+    write("a.pf_vox", box(8));
+    writeText(folder / "s.toml", "[[models]]\npath = 'a.pf_vox'\n");
+    const ViewCamera above{.position = {0.4, 3.0, 3.0}, .target = {0.4, 0.0, 0.4}};
+    start({.path = folder / "a.pf_vox", .camera = {.camera = above, .name = {}}});
+    EXPECT_TRUE(session->showsSingleModel());
+    const Picture standing = drawn();
+    EXPECT_GT(session->statistics().ambientRays, 0u);
+    session->pickAt({0.5, 0.95});
+    EXPECT_FALSE(session->pick()) << "the ground";
+    session->settings.modelGround = false;
+    EXPECT_TRUE(session->needsFrame(kSize));
+    EXPECT_FALSE(drawn().pixels == standing.pixels);
+    EXPECT_FALSE(session->memory().settings.modelGround);
+    session->open(folder / "s.toml");
+    settle();
+    EXPECT_FALSE(session->showsSingleModel());
+    session->settings.modelGround = true;
+    session->camera.set(above);
+    const Picture floating = drawn();
+    session->settings.sceneGround = true;
+    EXPECT_FALSE(drawn().pixels == floating.pixels);
+}
+
 TEST_F(SessionTest, AChangedFileIsShownAndTheCameraStays) {
     write("a.pf_vox", demoRoom());
     start({.path = folder / "a.pf_vox"});

@@ -10,6 +10,7 @@
 #include <pfvox/pf_vox.hpp>
 #include <set>
 
+#include "shared/color.glsl.h"
 #include "support/voxel_models.hpp"
 
 namespace pfvox {
@@ -20,12 +21,11 @@ constexpr glm::ivec3 kSteps[6] = {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, 
 OctreeAsset buildWithLod(const VoxelAsset& asset) { return buildOctrees(asset, Limits{}, {.lod = true}).value(); }
 
 double linearOf(std::uint8_t srgb) {
-    const double v = srgb / 255.0;
-    return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
+    return shared::linearFromSrgb(srgb / 255.0);
 }
 
 double srgbOf(double linear) {
-    return 255.0 * (linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055);
+    return 255.0 * shared::srgbFromLinear(linear);
 }
 
 /// What a node should be, from the voxels of its cube.

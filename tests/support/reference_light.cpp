@@ -4,16 +4,12 @@
 #include <numbers>
 #include <pfvox/reference_caster.hpp>
 
+#include "shared/color.glsl.h"
 #include "support/procedural.hpp"
 
 namespace pfvox::test {
 
 namespace {
-
-double linear(std::uint8_t byte) {
-    const double c = byte / 255.0;
-    return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
-}
 
 class Tracer {
   public:
@@ -29,7 +25,7 @@ class Tracer {
             const auto hit = caster_.cast({.origin = origin, .direction = direction});
             if (!hit) return light + throughput * sky(direction);
             const Material& m = asset_.materials[hit->material];
-            const glm::dvec3 albedo(linear(m.baseColor.r), linear(m.baseColor.g), linear(m.baseColor.b));
+            const glm::dvec3 albedo = shared::linearFromSrgb(glm::dvec3(m.baseColor) / 255.0);
             light += throughput * albedo * static_cast<double>(m.emissionStrength);
             if (bounce == bounces) return light;
             position = origin + hit->t * direction;

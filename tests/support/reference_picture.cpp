@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <pfvox/reference_caster.hpp>
+
+#include "shared/color.glsl.h"
 
 namespace pfvox::test {
 
@@ -15,22 +18,67 @@ std::uint32_t packed(glm::dvec3 c) {
     return byte(c.x) | byte(c.y) << 8 | byte(c.z) << 16 | 0xff000000u;
 }
 
-double srgbFromLinear(double c) {
-    return c > 0.0031308 ? 1.055 * std::pow(c, 1.0 / 2.4) - 0.055 : 12.92 * c;
+/// Of the octree's leaf that a voxel lies in: the largest aligned cube of one material.
+int leafLog2(const OctreeModel& model, glm::ivec3 voxel) {
+    const auto isUniform = [&](int log2) {
+        const int edge = 1 << log2;
+        const glm::ivec3 corner = model.originVoxels + (voxel - model.originVoxels) / edge * edge;
+        const auto first = model.at(corner);
+        for (int i = 0; i < edge * edge * edge; ++i)
+            if (model.at(corner + glm::ivec3(i % edge, i / edge % edge, i / edge / edge)) != first)
+                return false;
+        return true;
+    };
+    int log2 = 0;
+    while (log2 < static_cast<int>(model.depth) && isUniform(log2 + 1)) ++log2;
+    return log2;
+}
+
+glm::dvec3 indexColor(std::uint32_t index) {
+    const auto mixed = [](std::uint32_t x) {
+        x = (x ^ x >> 16) * 0x7feb352du;
+        x = (x ^ x >> 15) * 0x846ca68bu;
+        return x ^ x >> 16;
+    };
+    const double value = 0.55 + 0.45 * (mixed(index) & 0xffffu) / 65536.0;
+    const glm::dvec3 hue = glm::fract(index * 0.61803399) + glm::dvec3(0.0, 0.33, 0.67);
+    return value * (0.5 + 0.5 * glm::cos(2.0 * std::numbers::pi * hue));
 }
 
 std::uint32_t pixelOf(const OctreeAsset& asset, const ReferenceHit& hit, viewer::ViewMode mode) {
-    if (mode == viewer::ViewMode::Albedo) {
-        const glm::u8vec4 c = asset.materials[hit.material].baseColor;
-        return packed(glm::dvec3(c) / 255.0);
+    if (mode == viewer::ViewMode::Albedo)
+        return packed(glm::dvec3(asset.materials[hit.material].baseColor) / 255.0);
+    if (mode == viewer::ViewMode::Material) return packed(indexColor(hit.material));
+    if (mode == viewer::ViewMode::Depth) {
+        const OctreeModel& model = asset.models[asset.instances[hit.instance].model];
+        return displayed(heatColor(1.0 - leafLog2(model, hit.voxel) / 7.0));
     }
-    // The normal is meant for the screen: the viewer takes the encoding at its end back with a power of 2.2.
-    const glm::dvec3 shown = 0.5 + 0.5 * hit.normal;
-    return packed({srgbFromLinear(std::pow(shown.x, 2.2)), srgbFromLinear(std::pow(shown.y, 2.2)),
-                   srgbFromLinear(std::pow(shown.z, 2.2))});
+    return packed(0.5 + 0.5 * hit.normal);
 }
 
 }  // namespace
+
+std::uint32_t displayed(const glm::dvec3& linear) {
+    return packed(shared::srgbFromLinear(linear));
+}
+
+glm::dvec3 heatColor(double x) {
+    x = std::clamp(x, 0.0, 1.0);
+    const auto step = [&](double low, double high) { return glm::smoothstep(low, high, x); };
+    const glm::dvec3 cold =
+        glm::mix(glm::dvec3(0.01, 0.01, 0.10), glm::dvec3(0.02, 0.35, 0.20), step(0.0, 0.35));
+    const glm::dvec3 warm =
+        glm::mix(glm::dvec3(0.90, 0.75, 0.05), glm::dvec3(0.85, 0.05, 0.02), step(0.5, 0.85));
+    return glm::mix(glm::mix(cold, warm, step(0.25, 0.6)), glm::dvec3(1.0), step(0.85, 1.0));
+}
+
+int channelsApart(std::uint32_t a, std::uint32_t b) {
+    int apart = 0;
+    for (int shift = 0; shift < 24; shift += 8)
+        apart = std::max(
+            apart, std::abs(static_cast<int>(a >> shift & 0xffu) - static_cast<int>(b >> shift & 0xffu)));
+    return apart;
+}
 
 viewer::Picture referencePicture(const OctreeAsset& asset, const viewer::ViewCamera& camera,
                                  const viewer::PictureSettings& settings) {
@@ -58,12 +106,7 @@ double differingShare(const viewer::Picture& picture, const viewer::Picture& ref
     for (std::size_t i = 0; i < reference.pixels.size(); ++i) {
         if (reference.pixels[i] == 0) continue;
         ++hits;
-        int apart = 0;
-        for (int shift = 0; shift < 24; shift += 8) {
-            const auto channel = [&](const viewer::Picture& p) { return static_cast<int>(p.pixels[i] >> shift & 0xffu); };
-            apart = std::max(apart, std::abs(channel(picture) - channel(reference)));
-        }
-        differing += apart > 2 ? 1 : 0;
+        differing += channelsApart(picture.pixels[i], reference.pixels[i]) > 2 ? 1u : 0u;
     }
     return hits == 0 ? 1.0 : static_cast<double>(differing) / static_cast<double>(hits);
 }

@@ -10,14 +10,15 @@
 #include <pfvox/files.hpp>
 #include <vector>
 
+#include "shared/color.glsl.h"
+
 namespace pfvox::tools {
 
 namespace {
 
 std::uint8_t srgbByte(float linear) {
     const float c = std::clamp(std::isfinite(linear) ? linear : 0.0f, 0.0f, 1.0f);
-    const float encoded = c <= 0.0031308f ? 12.92f * c : 1.055f * std::pow(c, 1.0f / 2.4f) - 0.055f;
-    return static_cast<std::uint8_t>(std::lround(255.0f * encoded));
+    return static_cast<std::uint8_t>(std::lround(255.0f * shared::srgbFromLinear(c)));
 }
 
 struct FreeContext {

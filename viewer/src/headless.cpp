@@ -16,6 +16,7 @@
 #include "open_path.hpp"
 #include "png.hpp"
 #include "report.hpp"
+#include "view_passes.hpp"
 
 namespace pfvox::viewer {
 
@@ -162,6 +163,15 @@ Result<void> checkAtlas(const PictureSettings& settings, const ShownProbes* prob
                                                      settings.atlas.page, count, tools::plural(pages, "page")));
 }
 
+/// As many rays for each pixel of a picture, however many samples and frames it is made of.
+std::uint32_t ambientRaysOf(const Options& options) {
+    constexpr std::uint32_t kRaysOfPixel = 64;
+    if (options.screenshot.empty()) return kFrameAmbientRays;
+    const std::uint64_t frames = options.cameraPath.empty() ? options.frames : 1;
+    const std::uint64_t samples = frames * options.picture.samplesPerPixel;
+    return static_cast<std::uint32_t>(std::max<std::uint64_t>(kRaysOfPixel / samples, 1));
+}
+
 }  // namespace
 
 Result<void> runHeadless(const Options& options, Diagnostics& diagnostics) {
@@ -173,6 +183,8 @@ Result<void> runHeadless(const Options& options, Diagnostics& diagnostics) {
     PFVOX_TRY(const std::optional<ViewCamera>, camera, chosenCamera(options.camera, path.file, loaded.scene));
     PictureSettings settings = options.picture;
     settings.lighting = lightingOf(loaded.scene);
+    settings.ambientRays = ambientRaysOf(options);
+    settings.ground = options.ground.value_or(isSingleModel(path.file, loaded.scene));
     settings.lighting.exposure = static_cast<float>(std::exp2(options.exposureStops.value_or(0.0)));
     const std::chrono::duration<double, std::milli> loadTime = std::chrono::steady_clock::now() - started;
 
@@ -185,6 +197,12 @@ Result<void> runHeadless(const Options& options, Diagnostics& diagnostics) {
     if (light != nullptr) diagnostics.note("probes", "indirect light from " + light->file.string());
     PFVOX_CHECK(checkView(settings.mode, light, path.file));
     PFVOX_CHECK(checkAtlas(settings, light));
+    std::optional<GpuEmitters> emitters;
+    if (isGuessed({scene, light}, settings)) {
+        PFVOX_TRY(GpuEmitters, made, GpuEmitters::upload(device, loaded, diagnostics));
+        emitters.emplace(std::move(made));
+        if (light == nullptr) diagnostics.note("no-probes", guessNote(path.file));
+    }
 
     const double aspect = static_cast<double>(options.picture.width) / options.picture.height;
     RunReport run{.device = device.info(),
@@ -193,7 +211,7 @@ Result<void> runHeadless(const Options& options, Diagnostics& diagnostics) {
                   .settings = settings,
                   .probes = light,
                   .loadMs = loadTime.count()};
-    PFVOX_CHECK(draw({device, {scene, light}, options}, run));
+    PFVOX_CHECK(draw({device, {scene, light, emitters ? &*emitters : nullptr}, options}, run));
     run.memory = device.memory();
     PFVOX_CHECK(writeStatistics(options.statisticsFile, toJson(run)));
     reportFindings(run, device, diagnostics);

@@ -68,6 +68,10 @@ fs::path neighbourOf(const OpenPath& open, int step) {
     return open.siblings[static_cast<std::size_t>(((at + step) % count + count) % count)];
 }
 
+bool isSingleModel(const fs::path& file, const Scene& scene) {
+    return file.extension() == ".pf_vox" && scene.models.size() <= 1;
+}
+
 std::vector<fs::path> filesOf(const fs::path& file, const Scene& scene) {
     std::vector<fs::path> files{file};
     for (const SceneModel& model : scene.models) {

@@ -21,6 +21,9 @@ Result<OpenPath> openPath(const std::filesystem::path& path);
 /// `step` files further in the list, beginning anew at its end.
 std::filesystem::path neighbourOf(const OpenPath& open, int step);
 
+/// Whether this is a PF_VOX file alone, with nothing added to it: such a model stands on a ground.
+bool isSingleModel(const std::filesystem::path& file, const Scene& scene);
+
 /// The files that a scene was read from: itself and its models.
 std::vector<std::filesystem::path> filesOf(const std::filesystem::path& file, const Scene& scene);
 

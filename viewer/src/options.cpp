@@ -9,6 +9,7 @@
 #include <cmath>
 #include <vector>
 
+#include "common/command_line.hpp"
 #include "common/help_page.hpp"
 #include "common/text.hpp"
 #include "common/unknown_option.hpp"
@@ -132,8 +133,12 @@ void declareLight(CLI::App& app, Options& options, RawOptions& raw) {
             ->type_name("FILE")
             ->check(tools::showDefault("the one beside the scene, by its name"))
             ->check(tools::suggestFiles({".pf_probe"}));
-    light->add_flag("--no-probes", options.probes.none, "Guess indirect light from the sky even if there are probes")
+    light
+        ->add_flag("--no-probes", options.probes.none,
+                   "Guess indirect light from what is near by even if there are probes")
         ->excludes(probes);
+    tools::addSwitch(*light, "ground", options.ground, "A ground under what is shown, with its shadow",
+                     "under a single model, not in scenes");
     raw.exposure =
         light->add_option("--exposure", raw.exposureStops, "Stops brighter, -16 to 16")
             ->check(CLI::Range(-16.0, 16.0))

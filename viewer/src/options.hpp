@@ -20,6 +20,7 @@ struct Options {
     std::optional<double> exposureStops;  ///< nothing = 0, in the window what it was last
     std::optional<ToneMap> toneMap;
     std::filesystem::path cameraPath;  ///< a flight instead of one picture; empty = none
+    std::optional<bool> ground;        ///< nothing = under a single model; in the window what it was last
     std::uint32_t frames = 1;          ///< of which a picture is the mean; with cameraPath: pictures
     std::string device;                ///< gpu::DeviceOptions::selector
     std::string statisticsFile;        ///< "-" = stdout, empty = none

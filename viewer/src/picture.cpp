@@ -31,6 +31,7 @@ PictureStatistics& PictureStatistics::operator+=(const PictureStatistics& other)
     hits += other.hits;
     cappedRays += other.cappedRays;
     sunRays += other.sunRays;
+    ambientRays += other.ambientRays;
     reflectionRays += other.reflectionRays;
     add(tiers, other.tiers);
     withoutValue += other.withoutValue;

@@ -8,6 +8,7 @@
 #include <glm/glm.hpp>
 #include <memory>
 #include <pfvox/gpu.hpp>
+#include <pfvox/gpu_emitters.hpp>
 #include <pfvox/gpu_scene.hpp>
 #include <pfvox/probe_query.hpp>
 #include <pfvox/scene.hpp>
@@ -45,6 +46,9 @@ struct Lighting {
 };
 Lighting lightingOf(const Scene& scene);
 
+/// PictureSettings::ambientRays of frames that follow one another.
+inline constexpr std::uint32_t kFrameAmbientRays = 2;
+
 struct PictureSettings {
     std::uint32_t width = 1280;
     std::uint32_t height = 720;
@@ -53,6 +57,10 @@ struct PictureSettings {
     /// Levels of detail that are narrower than this many pixels stand for what is in them; 0 = not used.
     float lodPixels = 1.0f;
     ToneMap toneMap = ToneMap::Standard;
+    /// Rays of each sample that guess indirect light where no probes say it.
+    std::uint32_t ambientRays = 16;
+    /// Whether the scene stands on a ground; seen in the final picture alone.
+    bool ground = false;
     AtlasChoice atlas;
     Lighting lighting;
     bool operator==(const PictureSettings&) const = default;
@@ -61,14 +69,17 @@ struct PictureSettings {
 /// What is drawn; all of it outlives the call.
 struct PictureInput {
     // Implicit: most pictures are of a scene alone.
-    PictureInput(const gpu::Scene& drawn, const ShownProbes* light = nullptr) : scene(drawn), probes(light) {}
+    PictureInput(const gpu::Scene& drawn, const ShownProbes* light = nullptr,
+                 const GpuEmitters* lamps = nullptr)
+        : scene(drawn), probes(light), emitters(lamps) {}
     const gpu::Scene& scene;
-    const ShownProbes* probes;  ///< null = none
+    const ShownProbes* probes;    ///< null = none
+    const GpuEmitters* emitters;  ///< what glows where no probes say it (isGuessed); null = nothing
 };
 
 /// The programs of a frame, each measured on its own.
-enum class Pass : std::uint8_t { Scene, Geometry, Sun, Reflections, Light, Field, Atlas, Resolve };
-inline constexpr std::size_t kPasses = 8;
+enum class Pass : std::uint8_t { Scene, Geometry, Sun, Ambient, Reflections, Light, Field, Atlas, Resolve };
+inline constexpr std::size_t kPasses = 9;
 /// "scene", "geometry", ...
 std::string_view toString(Pass pass);
 /// Milliseconds on the device, by Pass.
@@ -84,6 +95,7 @@ struct PictureStatistics {
     std::uint64_t hits = 0;        ///< camera rays that met a voxel
     std::uint64_t cappedRays = 0;  ///< given up after too many steps: a fault of ours or of the data
     std::uint64_t sunRays = 0;
+    std::uint64_t ambientRays = 0;                 ///< that guess indirect light
     std::uint64_t reflectionRays = 0;              ///< shadow rays where they end counted
     std::array<std::uint64_t, gpu::kProbeTierCount> tiers{};  ///< surface samples by what gave their indirect light
     std::uint64_t withoutValue = 0;                ///< of these: none, or not finite

@@ -43,15 +43,23 @@ Json pictureJson(const PictureSettings& settings, const PictureStatistics& pictu
             {"view", std::string(toString(settings.mode))},
             {"exposureStops", std::log2(static_cast<double>(settings.lighting.exposure))},
             {"toneMap", std::string(toString(settings.toneMap))},
+            {"ground", settings.ground},
             {"gpuMs", picture.gpuMs},
             {"cameraRays", picture.cameraRays},
             {"cameraRaysPerSecond", picture.gpuMs > 0.0 ? rays / picture.gpuMs * 1e3 : 0.0},
             {"sunRays", picture.sunRays},
+            {"ambientRays", picture.ambientRays},
             {"reflectionRays", picture.reflectionRays},
             {"hits", picture.hits},
             {"steps", picture.steps},
             {"stepsPerCameraRay", rays > 0.0 ? static_cast<double>(picture.steps) / rays : 0.0},
             {"cappedRays", picture.cappedRays}};
+}
+
+/// Where the indirect light of a picture comes from; null where it has none.
+Json indirectJson(const RunReport& report) {
+    if (!entryOf(report.settings.mode).isRadiance || isAtlas(report.settings.mode)) return nullptr;
+    return report.probes != nullptr ? "probes" : "approximation";
 }
 
 Json probesJson(const ShownProbes* probes) {
@@ -159,6 +167,7 @@ std::string toJson(const RunReport& report) {
                     {"picture", pictureJson(report.settings, report.picture)},
                     {"frames", framesJson(report)},
                     {"probes", probesJson(report.probes)},
+                    {"indirect", indirectJson(report)},
                     {"light", lightJson(report.picture)},
                     {"field", fieldJson(report.picture)},
                     {"deviceMemory",

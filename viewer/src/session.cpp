@@ -122,6 +122,7 @@ Result<void> Session::show(OpenPath path, LoadedScene loaded, bool keepCamera) {
     const bool sameLight = keepCamera && shown_ && lightingOf(shown_->loaded.scene) == lightingOf(loaded.scene);
     if (!sameLight) lighting = lightingOf(loaded.scene);
     if (!keepCamera) probes_.reset();
+    emitters_.reset();
     std::vector<WorldBounds> boxes = assetBoxesOf(loaded);
     shown_.emplace(ShownScene{std::move(path), std::move(loaded), std::move(scene), std::move(boxes)});
     composer.begin(shown_->path.file, shown_->loaded);
@@ -244,6 +245,10 @@ void Session::writeScreenshot() {
     written ? log_->add(MessageKind::Note, "wrote " + file.string()) : log_->addError(describe(written.error()));
 }
 
+bool Session::showsSingleModel() const {
+    return shown_ && isSingleModel(shown_->path.file, shown_->loaded.scene);
+}
+
 PictureSettings Session::pictureSettings(glm::uvec2 windowPixels) const {
     const auto scaled = [&](std::uint32_t edge) {
         return std::max(1u, static_cast<std::uint32_t>(std::lround(edge * settings.renderScale)));
@@ -254,6 +259,8 @@ PictureSettings Session::pictureSettings(glm::uvec2 windowPixels) const {
                             .mode = mode,
                             .lodPixels = static_cast<float>(settings.lodPixels),
                             .toneMap = settings.toneMap,
+                            .ambientRays = kFrameAmbientRays,
+                            .ground = showsSingleModel() ? settings.modelGround : settings.sceneGround,
                             .atlas = atlas,
                             .lighting = lighting};
     picture.lighting.exposure = static_cast<float>(std::exp2(settings.exposureStops));
@@ -271,8 +278,9 @@ Result<void> Session::draw(glm::uvec2 windowPixels) {
     if (!needsFrame(windowPixels)) return {};
     const PictureSettings picture = pictureSettings(windowPixels);
     if (!settings.antiAliasing) frames_.restart();
+    PFVOX_TRY(const GpuEmitters* const, emitters, emittersFor(picture));
     PFVOX_TRY(const PictureStatistics, statistics,
-              frames_.draw(*device_, {shown_->scene, probes()}, camera.camera(), picture));
+              frames_.draw(*device_, {shown_->scene, probes(), emitters}, camera.camera(), picture));
     statistics_ = statistics;
     drawn_ = {camera.camera(), picture};
     frameTimesMs_.push_back(static_cast<float>(statistics_.gpuMs));

@@ -92,6 +92,9 @@ class Session {
     /// Of the file of the selected model, metres. Precondition: shown().
     double fileVoxelOfSelected() const;
     void frameAll();
+    /// A PF_VOX file to which nothing was added; such a model stands on a ground unless `settings` says
+    /// otherwise.
+    bool showsSingleModel() const;
 
     /// Takes over what has been loaded, looks after changed files.
     void update(double secondsSinceStart);
@@ -158,6 +161,7 @@ class Session {
     void openNeighbour(int step);
     void writeScreenshot();
     PictureSettings pictureSettings(glm::uvec2 windowPixels) const;
+    Result<const GpuEmitters*> emittersFor(const PictureSettings& picture);
     double aspect() const;
 
     gpu::Device* device_;
@@ -169,6 +173,7 @@ class Session {
     OpenPath wanted_;  ///< what was opened last, whether or not it could be
     std::optional<ShownScene> shown_;
     std::optional<ShownProbes> probes_;
+    std::optional<GpuEmitters> emitters_;  ///< of shown_, once they are needed
     ProbeRequest probeRequest_;
     std::optional<Loading> loading_;
     std::vector<std::future<Result<LoadedScene>>> outdated_;  ///< what nobody waits for any more

@@ -57,6 +57,7 @@ void Session::newScene() {
         wanted_ = {};
         probeRequest_ = {};
         probes_.reset();
+        emitters_.reset();
         selectedProbe.reset();
         pick_.reset();
         shown_.emplace(ShownScene{.path = {}, .loaded = nothing, .scene = *std::move(scene)});
@@ -139,6 +140,7 @@ Result<void> Session::rearrange(LoadedScene loaded) {
     if (!sameModels(loaded, shown_->loaded)) {
         PFVOX_TRY(gpu::Scene, scene, gpu::Scene::build(*device_, gpu::partsOf(loaded), *log_, &shown_->scene));
         shown_->scene = std::move(scene);
+        emitters_.reset();
         pick_.reset();
         frames_.restart();
         drawn_.reset();

@@ -18,13 +18,8 @@ void Session::findProbesOf(const ShownScene& shown) {
         findProbes(*device_, probeRequest_, shown.loaded, shown.path.file, *log_);
     if (!found) return log_->addError(describe(found.error()));
     probes_ = *std::move(found);
-    if (probes_) {
-        log_->add(MessageKind::Note, "probes from " + probes_->file.string());
-    } else if (probeRequest_.none || shown.path.file.empty()) {
-        log_->add(MessageKind::Note, probeRequest_.none ? "no probes, as asked" : "no probes yet");
-    } else {
-        log_->add(MessageKind::Note, "no probes: there is no " + probesBeside(shown.path.file).string());
-    }
+    log_->add(MessageKind::Note,
+              probes_ ? "probes from " + probes_->file.string() : guessNote(shown.path.file));
     frames_.restart();
     drawn_.reset();
 }
@@ -41,6 +36,15 @@ void Session::dropProbes() {
     probes_.reset();
     frames_.restart();
     drawn_.reset();
+}
+
+Result<const GpuEmitters*> Session::emittersFor(const PictureSettings& picture) {
+    if (!isGuessed({shown_->scene, probes()}, picture)) return nullptr;
+    if (!emitters_) {
+        PFVOX_TRY(GpuEmitters, made, GpuEmitters::upload(*device_, shown_->loaded, *log_));
+        emitters_.emplace(std::move(made));
+    }
+    return &*emitters_;
 }
 
 std::optional<AtlasLayout> Session::shownAtlas() const {

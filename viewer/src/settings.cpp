@@ -129,6 +129,8 @@ Result<Settings> parseSettings(std::string_view text, Diagnostics& diagnostics) 
     reader.number("lodPixels", 0.0, 16.0, settings.lodPixels);
     reader.number("exposureStops", -16.0, 16.0, settings.exposureStops);
     reader.toneMap("toneMap", settings.toneMap);
+    reader.flag("modelGround", settings.modelGround);
+    reader.flag("sceneGround", settings.sceneGround);
     reader.flag("showProbeGrid", settings.showProbeGrid);
     reader.flag("showBounds", settings.showBounds);
     return settings;
@@ -137,10 +139,12 @@ Result<Settings> parseSettings(std::string_view text, Diagnostics& diagnostics) 
 std::string settingsText(const Settings& settings) {
     return fmt::format(
         "windowWidth = {}\nwindowHeight = {}\ncameraMode = '{}'\nshowWindows = {}\nantiAliasing = {}\n"
-        "renderScale = {:.6f}\nlodPixels = {:.6f}\nexposureStops = {:.6f}\ntoneMap = '{}'\nshowProbeGrid = {}\nshowBounds = {}\n",
+        "renderScale = {:.6f}\nlodPixels = {:.6f}\nexposureStops = {:.6f}\ntoneMap = '{}'\n"
+        "modelGround = {}\nsceneGround = {}\nshowProbeGrid = {}\nshowBounds = {}\n",
         settings.windowWidth, settings.windowHeight, settings.cameraMode == CameraMode::Fly ? "fly" : "orbit",
         settings.showWindows, settings.antiAliasing, settings.renderScale, settings.lodPixels,
-        settings.exposureStops, toString(settings.toneMap), settings.showProbeGrid, settings.showBounds);
+        settings.exposureStops, toString(settings.toneMap), settings.modelGround, settings.sceneGround,
+        settings.showProbeGrid, settings.showBounds);
 }
 
 Result<CameraMemory> parseCameras(std::string_view text) {

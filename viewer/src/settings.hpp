@@ -25,6 +25,8 @@ struct Settings {
     double lodPixels = 1.0;     ///< PictureSettings::lodPixels, 0 to 16
     double exposureStops = 0.0; ///< -16 to 16
     ToneMap toneMap = ToneMap::Standard;
+    bool modelGround = true;    ///< a ground under a single model
+    bool sceneGround = false;   ///< and under scenes
     bool showProbeGrid = false; ///< upon the picture
     bool showBounds = false;    ///< boxes of the models, upon the picture
     bool operator==(const Settings&) const = default;

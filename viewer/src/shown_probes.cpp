@@ -94,6 +94,12 @@ Result<ShownProbes> openProbes(gpu::Device& device, const fs::path& file, const 
     return shown;
 }
 
+std::string guessNote(const fs::path& sceneFile) {
+    const std::string note = "no probes: indirect light is an approximation from what is near by";
+    if (sceneFile.empty()) return note;
+    return fmt::format("{}; bake it: {}", note, bakeCommand(sceneFile, probesBeside(sceneFile)));
+}
+
 Result<std::optional<ShownProbes>> findProbes(gpu::Device& device, const ProbeRequest& request,
                                               const LoadedScene& scene, const fs::path& sceneFile,
                                               Diagnostics& diagnostics) {

@@ -57,6 +57,10 @@ Result<std::optional<ShownProbes>> findProbes(gpu::Device& device, const ProbeRe
                                               const LoadedScene& scene, const std::filesystem::path& sceneFile,
                                               Diagnostics& diagnostics);
 
+/// What is to be told of a picture without probes: that its indirect light is a guess, and the command that
+/// bakes.
+std::string guessNote(const std::filesystem::path& sceneFile);
+
 /// Whether this view of a scene shows anything. Errors: FileNotFound (no probes), UnsupportedFeature (probes without depth
 /// maps); both name the command that makes what is missing.
 Result<void> checkView(ViewMode mode, const ShownProbes* probes, const std::filesystem::path& sceneFile);

@@ -10,6 +10,17 @@ namespace pfvox::viewer {
 
 namespace {
 
+constexpr double kAmbientReach = 0.2;  // of the scene's diagonal
+constexpr double kGroundRadius = 3.0;
+
+/// In the middle under everything; y of a radius of 0 = none.
+glm::vec4 groundUnder(const PictureInput& input, const PictureSettings& settings, double diagonal) {
+    const gpu::WorldBox& box = input.scene.bounds();
+    if (!hasGround(input, settings)) return glm::vec4(0.0f);
+    const glm::dvec3 middle = 0.5 * (box.min + box.max);
+    return {middle.x, box.min.y, middle.z, kGroundRadius * diagonal};
+}
+
 std::uint64_t joined(glm::uvec2 words) {
     return std::uint64_t{words.y} << 32 | words.x;
 }
@@ -25,6 +36,10 @@ shared::ViewParameters viewParametersOf(const ViewCamera& camera, const PictureS
     const Lighting& light = settings.lighting;
     const auto probeCount = static_cast<std::uint32_t>(input.probes != nullptr ? input.probes->probes.size() : 0);
     const AtlasLayout atlas = atlasLayout(settings, probeCount);
+    const gpu::WorldBox& box = input.scene.bounds();
+    const double diagonal = box.empty() ? 0.0 : glm::length(box.max - box.min);
+    const glm::vec4 ground = groundUnder(input, settings, diagonal);
+    const GpuEmitters* const emitters = input.emitters;
     return {.cameraPosition = glm::vec3(camera.position),
             .width = settings.width,
             .cameraForward = glm::vec3(frame.forward),
@@ -48,8 +63,13 @@ shared::ViewParameters viewParametersOf(const ViewCamera& camera, const PictureS
             .atlasCount = atlas.count,
             .atlasColumns = atlas.columns,
             .atlasCell = atlas.cell,
-            .reserved0 = 0,
-            .reserved1 = 0};
+            .ambientRays = settings.ambientRays,
+            .ambientReach = static_cast<float>(kAmbientReach * diagonal),
+            .groundMiddle = glm::vec3(ground),
+            .groundRadius = ground.w,
+            .emitters = emitters != nullptr ? emitters->address() : glm::uvec2(0),
+            .emitterCount = emitters != nullptr ? emitters->count() : 0,
+            .emitterPower = emitters != nullptr ? emitters->power() : 0.0f};
 }
 
 PictureStatistics statisticsOf(const ViewCounts& counts, std::uint64_t cameraRays) {
@@ -60,6 +80,7 @@ PictureStatistics statisticsOf(const ViewCounts& counts, std::uint64_t cameraRay
     s.cappedRays = joined(counts[shared::kCountCapped]);
     s.sunRays = joined(counts[shared::kCountSunRays]);
     s.reflectionRays = joined(counts[shared::kCountReflectionRays]);
+    s.ambientRays = joined(counts[shared::kCountAmbientRays]);
     s.withoutValue = joined(counts[shared::kCountWithoutValue]);
     for (std::size_t i = 0; i < s.tiers.size(); ++i) s.tiers[i] = joined(counts[shared::kCountTiers + i]);
     for (std::size_t i = 0; i < s.fieldStates.size(); ++i)

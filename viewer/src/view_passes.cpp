@@ -9,8 +9,8 @@ namespace pfvox::viewer {
 
 namespace {
 
-constexpr std::array<std::string_view, kPasses> kPassNames{"scene", "geometry", "sun",     "reflections",
-                                                           "light", "field",    "atlas",   "resolve"};
+constexpr std::array<std::string_view, kPasses> kPassNames{
+    "scene", "geometry", "sun", "ambient", "reflections", "light", "field", "atlas", "resolve"};
 
 bool isLit(ViewMode mode) {
     return mode == ViewMode::Final || mode == ViewMode::Indirect || mode == ViewMode::Tiers;
@@ -33,6 +33,7 @@ std::vector<Pass> passesOf(const PictureInput& input, const PictureSettings& set
     if (!isLit(mode)) return {Pass::Scene};
     std::vector<Pass> passes{Pass::Geometry};
     if (mode == ViewMode::Final && hasSun(settings)) passes.push_back(Pass::Sun);
+    if (isGuessed(input, settings)) passes.push_back(Pass::Ambient);
     if (shines(input, mode)) passes.push_back(Pass::Reflections);
     passes.push_back(Pass::Light);
     return passes;
@@ -44,6 +45,8 @@ std::span<const std::uint32_t> codeOf(Pass pass, bool probes) {
             return shaders::kViewGeometry;
         case Pass::Sun:
             return shaders::kViewSun;
+        case Pass::Ambient:
+            return shaders::kViewAmbient;
         case Pass::Reflections:
             return probes ? shaders::kViewReflectionsProbes : shaders::kViewReflections;
         case Pass::Light:
@@ -71,6 +74,15 @@ ViewMode drawnMode(const PictureInput& input, const PictureSettings& settings) {
     const bool fits = needs == ViewNeeds::Nothing || (needs == ViewNeeds::Probes && input.probes != nullptr) ||
                       (needs == ViewNeeds::DepthMaps && hasDepth);
     return fits ? settings.mode : ViewMode::Final;
+}
+
+bool hasGround(const PictureInput& input, const PictureSettings& settings) {
+    return settings.ground && !input.scene.bounds().empty() && drawnMode(input, settings) == ViewMode::Final;
+}
+
+bool isGuessed(const PictureInput& input, const PictureSettings& settings) {
+    const bool wanted = input.probes == nullptr || hasGround(input, settings);
+    return wanted && drawnMode(input, settings) == ViewMode::Final;
 }
 
 glm::uvec3 groupsFor(std::uint32_t width, std::uint32_t height) {

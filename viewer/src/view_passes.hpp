@@ -2,8 +2,9 @@
 //
 //     PictureInput, settings -> [ViewPasses::add] -> PassList -> Device::runTimed
 //
-// Light takes geometry, sun, reflections (of scenes that have any) and light; the other views one program. Programs with
-// and without probes, and with and without glass, are different ones: what a scene lacks costs nothing.
+// Light takes geometry, sun, ambient (without probes), reflections (of scenes that have any) and light; the
+// other views one program. Programs with and without probes, and with and without glass, are different ones:
+// what a scene lacks costs nothing.
 #pragma once
 
 #include <array>
@@ -78,6 +79,12 @@ class ViewPasses {
 
 /// The mode that is drawn: the final picture where probes are needed and there are none.
 ViewMode drawnMode(const PictureInput& input, const PictureSettings& settings);
+
+/// Whether there is a ground in this picture.
+bool hasGround(const PictureInput& input, const PictureSettings& settings);
+
+/// Whether indirect light is guessed, if only that of the ground.
+bool isGuessed(const PictureInput& input, const PictureSettings& settings);
 
 /// Workgroups that cover so many pixels.
 glm::uvec3 groupsFor(std::uint32_t width, std::uint32_t height);

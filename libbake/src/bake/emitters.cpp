@@ -4,16 +4,12 @@
 #include <numeric>
 
 #include "bake/exposed_faces.hpp"
+#include "shared/color.glsl.h"
 #include "shared/scene.glsl.h"
 
 namespace pfvox::bake {
 
 namespace {
-
-double linearFromSrgb(std::uint8_t encoded) {
-    const double c = encoded / 255.0;
-    return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
-}
 
 double meanOf(const glm::dvec3& c) {
     return (c.x + c.y + c.z) / 3.0;
@@ -44,9 +40,8 @@ shared::EmitterFace faceInWorld(const PlacedModel& placed, const VoxelFace& face
 }  // namespace
 
 glm::dvec3 emittedRadiance(const Material& material) {
-    const glm::u8vec4 c = material.baseColor;
     return static_cast<double>(material.emissionStrength) *
-           glm::dvec3(linearFromSrgb(c.r), linearFromSrgb(c.g), linearFromSrgb(c.b));
+           shared::linearFromSrgb(glm::dvec3(material.baseColor) / 255.0);
 }
 
 void makeAliasTable(std::span<const double> weights, std::span<shared::EmitterFace> faces) {

@@ -6,19 +6,15 @@
 #include <unordered_map>
 
 #include "scene/wide_tree.hpp"
+#include "shared/color.glsl.h"
 
 namespace pfvox::gpu::detail {
 
 namespace {
 
-double linearFromSrgb(std::uint8_t encoded) {
-    const double c = encoded / 255.0;
-    return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
-}
-
 shared::MaterialRecord recordOf(const Material& material) {
     const glm::u8vec4 c = material.baseColor;
-    return {.albedo = glm::vec3(linearFromSrgb(c.r), linearFromSrgb(c.g), linearFromSrgb(c.b)),
+    return {.albedo = glm::vec3(shared::linearFromSrgb(glm::dvec3(c) / 255.0)),
             .emissionStrength = material.emissionStrength,
             .type = static_cast<std::uint32_t>(material.type),
             .metalness = material.metalness,

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "import/vdb/pfvox_metadata.hpp"
 #include "octree/leaves.hpp"
+#include "shared/color.glsl.h"
 
 namespace pfvox::vdb_export {
 
@@ -103,8 +103,7 @@ openvdb::Vec3STree::Ptr colorTree(const openvdb::Int32Tree& labels, const std::v
 }  // namespace
 
 float linearOf(std::uint8_t srgb) {
-    const double encoded = srgb / 255.0;
-    return static_cast<float>(encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4));
+    return static_cast<float>(shared::linearFromSrgb(srgb / 255.0));
 }
 
 Result<ModelGrids> makeGrids(const OctreeModel& model, const std::vector<Material>& materials, const Limits& limits,

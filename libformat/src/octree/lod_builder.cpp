@@ -9,6 +9,7 @@
 #include <pfvox/assert.hpp>
 
 #include "octree/lod_measure.hpp"
+#include "shared/color.glsl.h"
 
 namespace pfvox::octree {
 
@@ -30,10 +31,7 @@ class LinearLight {
     std::uint32_t encode(std::uint64_t linear) const { return encoded_[linear]; }
 
   private:
-    static double decoded(double value) {
-        const double v = value / 255.0;
-        return 65535.0 * (v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4));
-    }
+    static double decoded(double value) { return 65535.0 * shared::linearFromSrgb(value / 255.0); }
     std::array<std::uint16_t, 256> linear_{};
     std::array<std::uint8_t, 65536> encoded_{};
 };

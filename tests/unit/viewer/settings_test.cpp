@@ -19,7 +19,9 @@ const Settings kUnusual{.windowWidth = 801,
                         .renderScale = 0.5,
                         .lodPixels = 2.25,
                         .exposureStops = -1.5,
-                        .toneMap = ToneMap::Aces};
+                        .toneMap = ToneMap::Aces,
+                        .modelGround = false,
+                        .sceneGround = true};
 const ViewCamera kCamera{.position = {1.1, -2.5, 1e6}, .target = {0.1, 0.2, 0.3}, .fovYDegrees = 47.3};
 
 TEST(Settings, TextIsReadBack) {

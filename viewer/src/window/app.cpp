@@ -100,6 +100,8 @@ Result<void> runWindow(const Options& options, Diagnostics& diagnostics) {
     Memory memory = loadMemory(folders, diagnostics);
     memory.settings.exposureStops = options.exposureStops.value_or(memory.settings.exposureStops);
     memory.settings.toneMap = options.toneMap.value_or(memory.settings.toneMap);
+    memory.settings.modelGround = options.ground.value_or(memory.settings.modelGround);
+    memory.settings.sceneGround = options.ground.value_or(memory.settings.sceneGround);
     PFVOX_TRY(const std::unique_ptr<GlfwLibrary>, glfw, GlfwLibrary::start());
     gpu::DeviceOptions deviceOptions{.selector = options.device, .validation = options.validation};
     glfw->require(deviceOptions);

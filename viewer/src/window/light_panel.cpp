@@ -64,6 +64,10 @@ void Panels::drawRendering(Session& session) {
         }
         if (session.shown() != nullptr && ImGui::CollapsingHeader("sun and sky", ImGuiTreeNodeFlags_DefaultOpen))
             drawSunAndSky(session);
+        if (session.shown() != nullptr && session.probes() == nullptr)
+            note(
+                "No probes: indirect light is an approximation from what is near by. probe-bake computes "
+                "it.");
         if (ImGui::CollapsingHeader("picture", ImGuiTreeNodeFlags_DefaultOpen)) {
             slider("exposure", session.settings.exposureStops, -8.0, 8.0, "%.1f stops");
             if (ImGui::BeginCombo("tone map", std::string(toString(session.settings.toneMap)).c_str())) {
@@ -75,6 +79,9 @@ void Panels::drawRendering(Session& session) {
             }
             slider("detail", session.settings.lodPixels, 0.0, 16.0, "%.1f pixels");
             slider("resolution", session.settings.renderScale, 0.25, 1.0, "%.2f");
+            Settings& settings = session.settings;
+            ImGui::Checkbox("ground",
+                            session.showsSingleModel() ? &settings.modelGround : &settings.sceneGround);
             ImGui::Checkbox("anti-aliasing over frames", &session.settings.antiAliasing);
         }
         ImGui::PopItemWidth();

@@ -128,8 +128,9 @@ void Panels::drawStatistics(const Session& session) {
             text(fmt::format("frame {} on the device, worst {}", millisecondsText(s.gpuMs), millisecondsText(worst)));
             const auto rays = static_cast<double>(s.cameraRays);
             text(fmt::format("{:.2f} million camera rays/s", s.gpuMs > 0.0 ? rays / s.gpuMs * 1e-3 : 0.0));
-            const double secondary = static_cast<double>(s.sunRays + s.reflectionRays);
-            text(fmt::format("{:.2f} million sun and mirror rays/s", s.gpuMs > 0.0 ? secondary / s.gpuMs * 1e-3 : 0.0));
+            const double secondary = static_cast<double>(s.sunRays + s.ambientRays + s.reflectionRays);
+            text(fmt::format("{:.2f} million rays/s of light",
+                             s.gpuMs > 0.0 ? secondary / s.gpuMs * 1e-3 : 0.0));
             text(fmt::format("{:.1f} steps a camera ray", rays > 0.0 ? static_cast<double>(s.steps) / rays : 0.0));
             drawPasses(s.passMs);
             text(fmt::format("{} frames in the picture", session.frames().frames()));

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "import/color_palette.hpp"
+#include "shared/color.glsl.h"
 
 namespace pfvox::import::vdb {
 
@@ -17,9 +18,7 @@ namespace {
 std::array<float, 255> makeSteps() {
     std::array<float, 255> steps{};
     for (std::size_t i = 0; i < steps.size(); ++i) {
-        const double encoded = (static_cast<double>(i) + 0.5) / 255.0;
-        const double linear = encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
-        steps[i] = static_cast<float>(linear);
+        steps[i] = static_cast<float>(shared::linearFromSrgb((static_cast<double>(i) + 0.5) / 255.0));
     }
     return steps;
 }
