@@ -20,19 +20,28 @@ tl::unexpected<Error> unavailable(std::string message) {
     return fail(ErrorCode::UnsupportedFeature, "OpenVDB files cannot be used: " + std::move(message));
 }
 
-/// What dlerror says, which is empty only if nothing failed.
-std::string loaderError() {
-    const char* text = ::dlerror();
-    return text != nullptr ? text : "unknown reason";
+/// Why the module was not opened, by what dlerror says, which is empty only if nothing failed.
+tl::unexpected<Error> loaderError() {
+    const char* const said = ::dlerror();
+    const std::string text = said != nullptr ? said : "unknown reason";
+    const auto says = [&](std::string_view part) { return text.find(part) != std::string::npos; };
+    if (says("annot allocate") || says("failed to map segment") || says("cannot map")) {
+        return fail(
+            ErrorCode::LimitExceeded,
+            fmt::format(
+                "not enough memory to open the OpenVDB module ({}): close other programs, or raise the limit "
+                "(ulimit -v)",
+                text));
+    }
+    if (says("No such file")) return unavailable(text + " (the OpenVDB library must be installed)");
+    return unavailable(text);
 }
 
 Result<const VdbModule*> open(const fs::path& file) {
     // Now, not when a function is first called: a missing symbol would end the program there. The handle stays open:
     // OpenVDB registers itself with libraries that outlive it.
     void* const handle = ::dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
-    if (handle == nullptr) {
-        return unavailable(fmt::format("{} (the OpenVDB library must be installed)", loaderError()));
-    }
+    if (handle == nullptr) return loaderError();
     const auto entry = reinterpret_cast<VdbModuleEntry>(::dlsym(handle, kVdbModuleEntry));
     if (entry == nullptr) return unavailable(fmt::format("{} is no module of pfvox", file.string()));
     const VdbModule* const module = entry();
