@@ -210,6 +210,19 @@ TEST_F(LimitedVox2pf, whereFilesAreFewItWaits) {
     EXPECT_EQ(filesBelow("out").size(), 1u * kAssets);
 }
 
+TEST_F(LimitedVox2pf, whereOpenVdbHasTooFewThreadsTheRemedyIsNamed) {
+    ASSERT_EQ(run({"in/0.vox", "-o", "a.pf_vox"}).exitCode, 0);
+    const ProcessResult exported = run({"export", "a.pf_vox", "-o", "a.vdb"});
+    if (exported.exitCode == 5) GTEST_SKIP() << "without OpenVDB";
+    ASSERT_EQ(exported.exitCode, 0);
+    for (const int threads : {2, 3, 4, 6}) {
+        const ProcessResult result =
+            limited("ulimit -u " + std::to_string(threads), "a.vdb -o b.pf_vox -j 4");
+        EXPECT_EQ(result.exitCode, 4) << threads << ": " << result.err;
+        EXPECT_THAT(result.err, HasSubstr("ulimit -u")) << threads;
+    }
+}
+
 #ifndef __SANITIZE_ADDRESS__
 TEST_F(LimitedVox2pf, whereMemoryIsLittleItIsSaidOrTakenLessOf) {
     const ProcessResult result = limited("ulimit -v 100000", "in -o out -j 16");

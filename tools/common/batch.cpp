@@ -61,7 +61,7 @@ struct BatchRoom {
 BatchRoom roomFor(int threads, std::size_t commits) {
     BatchRoom room{.threads = std::max(threads, 1), .committers = std::min(commits, BatchRoom::kMaxCommitters)};
     const int wanted = room.threads - 1 + static_cast<int>(room.committers);
-    if (const int startable = startableThreads(wanted); startable < wanted) {
+    if (const int startable = affordableThreads(wanted); startable < wanted) {
         room.threads = 1 + std::min(room.threads - 1, (startable + 1) / 2);
         room.committers = std::min(room.committers, static_cast<std::size_t>(startable - (room.threads - 1)));
     }

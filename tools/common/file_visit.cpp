@@ -59,7 +59,7 @@ ExitCode visitFiles(const CLI::App& command, const ReadOptions& options, const s
 
     const int wantedThreads =
         options.common.threads > 0 ? options.common.threads : tbb::this_task_arena::max_concurrency();
-    const int threads = 1 + startableThreads(wantedThreads - 1);
+    const int threads = 1 + affordableThreads(wantedThreads - 1);
     const tbb::global_control control(tbb::global_control::max_allowed_parallelism,
                                       static_cast<std::size_t>(threads));
     tbb::task_arena arena(threads);

@@ -4,28 +4,13 @@
 #include <sys/resource.h>
 
 #include <algorithm>
-#include <latch>
-#include <new>
-#include <system_error>
-#include <thread>
-#include <vector>
+#include <pfvox/threads.hpp>
 
 namespace pfvox::tools {
 
-int startableThreads(int wanted) {
-    if (wanted <= 0) return 0;
-    std::latch counted(1);
-    std::vector<std::thread> parked;
-    parked.reserve(static_cast<std::size_t>(wanted));
-    try {
-        while (parked.size() < static_cast<std::size_t>(wanted)) parked.emplace_back([&] { counted.wait(); });
-    } catch (const std::system_error&) {
-    } catch (const std::bad_alloc&) {
-    }
-    counted.count_down();
-    for (std::thread& thread : parked) thread.join();
-    const int started = static_cast<int>(parked.size());
-    return started == wanted ? wanted : started / 2;
+int affordableThreads(int wanted) {
+    const int startable = startableThreads(wanted);
+    return startable >= wanted ? wanted : startable / 2;
 }
 
 std::size_t openableFiles() {

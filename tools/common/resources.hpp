@@ -6,9 +6,9 @@
 
 namespace pfvox::tools {
 
-/// How many more threads, `wanted` at most, may be started now. Where it is fewer than that, half of what
-/// could be: the rest needs memory, too. TBB ends the program when one of its threads cannot be started.
-int startableThreads(int wanted);
+/// How many more threads, `wanted` at most, may be started. Where the system has fewer than that, half of
+/// them: the rest needs memory, too.
+int affordableThreads(int wanted);
 
 /// How many more files may be open at once, at least 1; a reserve for libraries is left out.
 std::size_t openableFiles();

@@ -185,20 +185,18 @@ Result<ChunkWalker> ChunkWalker::open(std::span<const std::byte> bytes, Diagnost
 
 Result<std::optional<Chunk>> ChunkWalker::next() {
     if (chunks_.remaining() == 0) return std::optional<Chunk>{};
-    if (chunks_.offset() >= announcedEnd_) {
-        if (!beginsChunk(chunks_)) {
-            warnAt(*diagnostics_, "vox-trailing-bytes", chunks_.offset(),
-                   fmt::format("{} bytes follow the end of MAIN and are ignored", chunks_.remaining()));
-            return std::optional<Chunk>{};
-        }
-        if (!isPastEnd_) {
-            warnAt(*diagnostics_, kContainerSize, chunks_.offset(),
-                   "chunks go on behind the end that MAIN announces; they are read, too");
-        }
-        isPastEnd_ = true;
+    if (chunks_.offset() >= announcedEnd_ && !beginsChunk(chunks_)) {
+        warnAt(*diagnostics_, "vox-trailing-bytes", chunks_.offset(),
+               fmt::format("{} bytes follow the end of MAIN and are ignored", chunks_.remaining()));
+        return std::optional<Chunk>{};
     }
     PFVOX_TRY(const ChunkHeader, header, readHeader(chunks_));
     const auto content = chunks_.sub(header.contentBytes);
+    if (chunks_.offset() > announcedEnd_ && !isPastEnd_) {
+        isPastEnd_ = true;
+        warnAt(*diagnostics_, kContainerSize, header.offsetBytes,
+               "chunks go on behind the end that MAIN announces; they are read, too");
+    }
     if (header.childrenBytes != 0) stepOverChildren(header.id, header.offsetBytes, header.childrenBytes);
     return std::optional<Chunk>{Chunk(header.id, header.offsetBytes, *content)};
 }
