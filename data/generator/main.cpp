@@ -26,8 +26,10 @@ void writeFile(const std::filesystem::path& file, const VoxScene& scene, const P
     std::printf("%s: %zu models, %zu bytes\n", file.string().c_str(), scene.models.size(), bytes.size());
 }
 
+/// One model whose corner at left, bottom and back lies in the origin, seen with y up.
 VoxScene only(Canvas model) {
     VoxScene scene;
+    scene.nodes.push_back(placeAtCorner("", 0, model.size(), {0, -model.size().y, 0}));
     scene.models.push_back(std::move(model));
     return scene;
 }
@@ -46,11 +48,11 @@ void writeAll(const std::filesystem::path& folder) {
     std::filesystem::create_directories(folder / "verify");
     const DemoPalette p;
     writeFile(folder / "courtyard.vox", makeCourtyard(p), p.palette);
-    writeFile(folder / "tree.vox", {.models = {makeTree(p, 17)}, .nodes = {}, .layers = {}}, p.palette);
-    writeFile(folder / "lamp.vox", {.models = {makeLamp(p)}, .nodes = {}, .layers = {}}, p.palette);
-    writeFile(folder / "statue.vox", {.models = {makeStatue(p)}, .nodes = {}, .layers = {}}, p.palette);
-    writeFile(folder / "verify/interior.vox", {.models = {makeInterior(p)}, .nodes = {}, .layers = {}}, p.palette);
-    writeFile(folder / "verify/foundry.vox", {.models = {makeFoundry(p)}, .nodes = {}, .layers = {}}, p.palette);
+    writeFile(folder / "tree.vox", only(makeTree(p, 17)), p.palette);
+    writeFile(folder / "lamp.vox", only(makeLamp(p)), p.palette);
+    writeFile(folder / "statue.vox", only(makeStatue(p)), p.palette);
+    writeFile(folder / "verify/interior.vox", only(makeInterior(p)), p.palette);
+    writeFile(folder / "verify/foundry.vox", only(makeFoundry(p)), p.palette);
 }
 
 }  // namespace

@@ -11,8 +11,8 @@ namespace pfvox {
 
 namespace {
 
-/// Changes with every release that can change the bytes of an output.
-constexpr std::string_view kConverterVersion = PFVOX_VERSION;
+/// Changes whenever the bytes of an output can change.
+constexpr std::string_view kConverterVersion = PFVOX_VERSION " revision 2";
 
 /// Seconds since the last call.
 class Stopwatch {

@@ -2,12 +2,18 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <atomic>
+#include <cerrno>
 #include <chrono>
+#include <csignal>
 #include <cstring>
 #include <filesystem>
+#include <new>
 #include <regex>
+#include <stdexcept>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -16,6 +22,8 @@
 #include "common/depfile.hpp"
 #include "common/exit_code.hpp"
 #include "common/inputs.hpp"
+#include "common/interrupt.hpp"
+#include "common/program.hpp"
 #include "common/table.hpp"
 #include "common/text.hpp"
 #include "support/temp_folder.hpp"
@@ -33,6 +41,33 @@ TEST(Glob, starsStayInAFolderAndDoubleStarsDoNot) {
     EXPECT_FALSE(globMatches("a?c.vox/x", "a/c.vox/x"));
     EXPECT_FALSE(globMatches("c.vo", "c.vox"));
     EXPECT_FALSE(globMatches("", "c.vox"));
+}
+
+// Tried one after the other, the stars of this one took minutes.
+TEST(Glob, manyStarsTakeNoTime) {
+    const std::string text(5000, 'a');
+    std::string pattern;
+    for (int i = 0; i < 300; ++i) pattern += i % 2 == 0 ? "*a" : "**a";
+    EXPECT_TRUE(globMatches(pattern, text));
+    EXPECT_FALSE(globMatches(pattern + "b", text));
+    EXPECT_TRUE(globMatches("**/**/a/***", "x/y/a/b/c"));
+    EXPECT_FALSE(globMatches("**/**/b", "x/ab"));
+    EXPECT_TRUE(globMatches("a**/b", "ab"));
+    EXPECT_TRUE(globMatches("a**/b", "ax/y/b"));
+}
+
+TEST(Escaped, leavesWordsAndShowsTheRest) {
+    EXPECT_EQ(escaped("Fenêtre 房子 🏠 a\"b\\c"), "Fenêtre 房子 🏠 a\"b\\c");
+    EXPECT_EQ(escaped("\x1b[31mred\x07\x7f"), "\\x1b[31mred\\x07\\x7f");
+    EXPECT_EQ(escaped("one\ntwo\r\tthree"), "one\\ntwo\\x0d\\x09three");
+    EXPECT_EQ(escaped(std::string("a\0b", 3)), "a\\x00b");
+    EXPECT_EQ(escaped("\xc2\x9b"
+                      "31m\xe2\x80\xae"
+                      "txt"),
+              "\\u{9b}31m\\u{202e}txt")
+        << "C1 codes and turned text";
+    EXPECT_EQ(escaped("Fen\xeatre \xc0\xaf \xed\xa0\x80"), "Fen\\xeatre \\xc0\\xaf \\xed\\xa0\\x80")
+        << "no UTF-8";
 }
 
 // weakly_canonical leaves a relative path of which nothing exists as it is.
@@ -196,6 +231,59 @@ TEST(Batch, failFastStartsNothingAfterAFailure) {
                                           .progressed = {}});
     EXPECT_EQ(started, 5u);
     EXPECT_EQ(finished, 5u);
+}
+
+/// Waits until a signal has come; ends with 1 after ten seconds without.
+void awaitInterrupt() {
+    for (int i = 0; i < 1000 && !isInterrupted(); ++i) ::usleep(10'000);
+    if (!isInterrupted()) ::_exit(1);
+}
+
+TEST(Interrupt, endsWithTheLastWhoStopsInOrder) {
+    const auto work = [] {
+        ::signal(SIGINT, SIG_DFL);
+        exitOnInterrupt();
+        {
+            const OrderlyStop outer;
+            {
+                const OrderlyStop inner;
+                ::kill(::getpid(), SIGINT);
+                awaitInterrupt();
+            }
+            // What an interrupted bake does last; a guard taken here once waited for ever.
+            const OrderlyStop late;
+        }
+        ::_exit(2);
+    };
+    EXPECT_EXIT(work(), testing::ExitedWithCode(130), "every output is either finished or as it was");
+}
+
+TEST(Interrupt, theSecondSignalEndsWorkThatDoesNotStop) {
+    const auto work = [] {
+        ::signal(SIGINT, SIG_DFL);
+        exitOnInterrupt();
+        const OrderlyStop never;
+        ::kill(::getpid(), SIGINT);
+        awaitInterrupt();
+        ::kill(::getpid(), SIGINT);
+        ::sleep(10);
+        ::_exit(2);
+    };
+    EXPECT_EXIT(work(), testing::ExitedWithCode(130), "");
+}
+
+/// Ends as a program whose work throws this.
+template <class Exception>
+[[noreturn]] void endWith(const Exception& exception) {
+    ::_exit(runProgram([&]() -> ExitCode { throw exception; }));
+}
+
+TEST(Program, exceptionsBecomeMessagesWithRemedies) {
+    EXPECT_EXIT(endWith(std::bad_alloc()), testing::ExitedWithCode(4), "error: not enough memory: .*-j");
+    EXPECT_EXIT(endWith(std::system_error(EAGAIN, std::generic_category())), testing::ExitedWithCode(4),
+                "ulimit -u");
+    EXPECT_EXIT(endWith(std::runtime_error("odd")), testing::ExitedWithCode(70),
+                "error: internal error: odd");
 }
 
 }  // namespace pfvox::tools

@@ -3,6 +3,7 @@
 #include <fstream>
 
 #include "cli/vox2pf_fixture.hpp"
+#include "support/vox_writer.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -196,7 +197,7 @@ TEST_F(Vox2pf, interruptGives130AndNoTemporaryFile) {
     for (int i = 0; i < 200; ++i) addSource("in/" + std::to_string(i) + ".vox", "courtyard.vox");
     Process child({PFVOX_VOX2PF, "in", "-o", "out", "-j", "2"},
                   {.environment = {}, .input = {}, .folder = folder.path()});
-    while (!exists("out")) ::usleep(1000);
+    while (filesBelow("out").empty()) ::usleep(1000);
     child.send(SIGINT);
     const ProcessResult result = child.finish();
     EXPECT_EQ(result.exitCode, 130);
@@ -206,6 +207,129 @@ TEST_F(Vox2pf, interruptGives130AndNoTemporaryFile) {
         EXPECT_THAT(name, Not(HasSubstr(".tmp")));
         EXPECT_EQ(bytes, written.begin()->second) << name << " is not complete";
     }
+}
+
+TEST_F(Vox2pf, metadataOfMacOsIsSkippedWithANote) {
+    addSource("in/a.vox");
+    writeText(folder / "in/._a.vox", std::string("\0\x05\x16\x07\0\2\0\0Mac OS X", 16));
+    const ProcessResult result = run({"in", "-o", "out", "-v"});
+    EXPECT_EQ(result.exitCode, 0) << result.err;
+    EXPECT_THAT(result.err, HasSubstr("1 file that macOS keeps beside others"));
+    EXPECT_THAT(filesBelow("out"), ElementsAre("a.pf_vox"));
+    EXPECT_THAT(run({"in/._a.vox", "-o", "out/"}).err, HasSubstr("what macOS keeps beside a file"));
+}
+
+TEST_F(Vox2pf, linkedFoldersThatAreNotSearchedAreSaid) {
+    addSource("in/a.vox");
+    addSource("elsewhere/b.vox");
+    std::filesystem::create_directory_symlink("../elsewhere", folder / "in/link");
+    EXPECT_THAT(run({"in", "-o", "out"}).err, HasSubstr("in: 1 linked folder not searched"));
+}
+
+TEST_F(Vox2pf, namesOfSourcesReachNoTerminalAsTheyAre) {
+    const std::string evil = "\x1b]0;pwn\x07\x1b[31mred\nline";
+    test::VoxWriter writer;
+    writer.model({1, 1, 1}, {{0, 0, 0, 1}})
+        .transform({.id = 0, .child = 1, .attributes = {{"_name", evil}}})
+        .shape({.id = 1})
+        .chunk("NOTE", test::voxInts({1}) + test::voxString(evil));
+    const std::string name = "evil\x1b[2J\n.vox";
+    writeText(folder / name, writer.finish());
+    writeText(folder / ("broken" + name), "VOX ");
+    const std::vector<std::vector<std::string>> commands{
+        {name, "-o", "a.pf_vox", "-v"},
+        {name, "-o", "a.pf_vox", "--explain"},
+        {"broken" + name, "-o", "b.pf_vox", "--color", "always"},
+        {"info", "-v", "a.pf_vox"},
+        {"validate", "a.pf_vox"},
+        {"export", "a.pf_vox", "-o", "x" + name},
+        {"info", name},
+        {name, name, "-o", "\x1b[2J.bin"}};
+    for (const std::vector<std::string>& command : commands) {
+        const ProcessResult result = run(command);
+        for (const std::string& text : {result.out, result.err}) {
+            EXPECT_THAT(text, Not(HasSubstr("\x1b]"))) << command[0];
+            EXPECT_THAT(text, Not(HasSubstr("\x1b[2J"))) << command[0];
+            EXPECT_THAT(text, Not(HasSubstr("\x1b[31m"))) << command[0];
+            EXPECT_THAT(text, Not(HasSubstr("\nline"))) << command[0];
+            EXPECT_THAT(text, Not(HasSubstr("\n.vox"))) << command[0];
+        }
+    }
+}
+
+TEST_F(Vox2pf, equalWarningsAreOneLineWithACount) {
+    std::string chunks = test::voxChunk("SIZE", test::voxInts({1, 1, 1})) +
+                         test::voxChunk("XYZI", test::voxInts({1, 0x01000000}));
+    const std::string palette = test::voxChunk("RGBA", std::string(1024, '\xff'));
+    for (int i = 0; i < 11; ++i) chunks += palette;
+    writeText(folder / "a.vox", "VOX " + test::voxBytes(150) + test::voxChunk("MAIN", "", chunks));
+    const ProcessResult result = run({"a.vox", "-o", "a.pf_vox"});
+    EXPECT_EQ(linesOf(result.err).size(), 1u) << result.err;
+    EXPECT_THAT(result.err, AllOf(HasSubstr("another chunk RGBA"), HasSubstr("(10 times)")));
+}
+
+TEST_F(Vox2pf, settingsThatNestWithoutEndAreAnError) {
+    addSource("a.vox");
+    std::string deep = "a";
+    for (int i = 0; i < 100'000; ++i) deep += ".a";
+    writeText(folder / "deep.toml", deep + "=1");
+    const ProcessResult result = run({"a.vox", "-o", "a.pf_vox", "--settings", "deep.toml"});
+    EXPECT_EQ(result.exitCode, 4);
+    EXPECT_THAT(result.err, AllOf(HasSubstr("deep.toml"), HasSubstr("line 1"), HasSubstr("nested deeper")));
+}
+
+TEST_F(Vox2pf, signalsThatWereIgnoredAtTheStartStayIgnored) {
+    for (int i = 0; i < 40; ++i) addSource("in/" + std::to_string(i) + ".vox", "courtyard.vox");
+    Process child({"/bin/sh", "-c", "trap '' INT HUP; exec \"$0\" in -o out -q", PFVOX_VOX2PF},
+                  {.environment = {}, .input = {}, .folder = folder.path()});
+    while (!exists("out")) ::usleep(1000);
+    child.send(SIGHUP);
+    child.send(SIGINT);
+    EXPECT_EQ(child.finish().exitCode, 0);
+    EXPECT_EQ(filesBelow("out").size(), 40u);
+}
+
+TEST_F(Vox2pf, aReaderThatGoesAwayIsAnErrorAndNoOutputIsMissing) {
+    for (int i = 0; i < 20; ++i) addSource("in/" + std::to_string(i) + ".vox");
+    const ProcessResult result =
+        runProcess({"/bin/bash", "-c", "\"$0\" in -o out --json | true; exit ${PIPESTATUS[0]}", PFVOX_VOX2PF},
+                   {.environment = {}, .input = {}, .folder = folder.path()});
+    EXPECT_EQ(result.exitCode, 3);
+    EXPECT_THAT(result.err, HasSubstr("its reader has gone"));
+    EXPECT_EQ(filesBelow("out").size(), 20u);
+}
+
+TEST_F(Vox2pf, aLimitOfFileSizesIsAnErrorAndLeavesNothing) {
+    addSource("a.vox", "courtyard.vox");
+    const ProcessResult result =
+        runProcess({"/bin/sh", "-c", "ulimit -f 1; exec \"$0\" a.vox -o out/", PFVOX_VOX2PF},
+                   {.environment = {}, .input = {}, .folder = folder.path()});
+    EXPECT_EQ(result.exitCode, 3);
+    EXPECT_THAT(result.err, HasSubstr("File too large"));
+    EXPECT_THAT(filesBelow("out"), IsEmpty());
+}
+
+TEST_F(Vox2pf, aReadOnlyOutputIsReplacedByForceOnly) {
+    addSource("a.vox");
+    addSource("b.vox", "statue.vox");
+    ASSERT_EQ(run({"a.vox", "-o", "x.pf_vox"}).exitCode, 0);
+    const std::string before = readText(folder / "x.pf_vox");
+    std::filesystem::permissions(folder / "x.pf_vox", std::filesystem::perms(0444));
+    EXPECT_EQ(run({"a.vox", "-o", "x.pf_vox"}).exitCode, 0) << "it is up to date";
+    const ProcessResult refused = run({"b.vox", "-o", "x.pf_vox"});
+    EXPECT_EQ(refused.exitCode, 3);
+    EXPECT_THAT(refused.err, HasSubstr("read-only"));
+    EXPECT_THAT(refused.err, HasSubstr("--force"));
+    EXPECT_EQ(readText(folder / "x.pf_vox"), before);
+    EXPECT_EQ(run({"b.vox", "-o", "x.pf_vox", "--force"}).exitCode, 0);
+    EXPECT_NE(readText(folder / "x.pf_vox"), before);
+}
+
+TEST_F(Vox2pf, namesOfOutputsMayBeAsLongAsTheFileSystemTakesThem) {
+    const std::string name(240, 'x');
+    addSource(name + ".vox");
+    EXPECT_EQ(run({name + ".vox", "-o", "out/"}).exitCode, 0);
+    EXPECT_TRUE(exists("out/" + name + ".pf_vox"));
 }
 
 /// Converts the statue with these options and returns what info tells.

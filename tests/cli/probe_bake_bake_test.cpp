@@ -152,6 +152,26 @@ TEST_F(StoppedBake, CtrlCLeavesWhatResumeTakes) {
     EXPECT_FALSE(std::filesystem::exists(journal()));
 }
 
+TEST_F(ProbeBakeScene, CtrlCEndsABakeWithADepfileAtAnyTime) {
+    writeScene("scene.toml", "box.pf_vox", kGrid);
+    const std::vector<std::string> arguments =
+        tiny({"scene.toml", "-o", "out.pf_probe", "--depfile", "out.d"});
+    ASSERT_EQ(run(arguments).exitCode, 0);
+    std::vector<std::string> command{PFVOX_PROBE_BAKE};
+    command.insert(command.end(), arguments.begin(), arguments.end());
+    for (const int delayMs : {20, 40, 60, 80, 120, 160, 240}) {
+        Process process(command, {.environment = {}, .input = {}, .folder = folder.path()});
+        std::this_thread::sleep_for(std::chrono::milliseconds(delayMs));
+        process.send(SIGINT);
+        for (int i = 0; i < 200 && !process.hasEnded(); ++i)
+            std::this_thread::sleep_for(std::chrono::milliseconds(50));
+        const bool hangs = !process.hasEnded();
+        process.send(SIGKILL);
+        EXPECT_THAT(process.finish().exitCode, ::testing::AnyOf(0, 130)) << delayMs << " ms";
+        ASSERT_FALSE(hangs) << delayMs << " ms";
+    }
+}
+
 TEST_F(StoppedBake, AKilledBakeResumesToTheSameBytes) {
     EXPECT_NE(stopBy(SIGKILL).exitCode, 0);
     EXPECT_FALSE(std::filesystem::exists(folder / "out.pf_probe"));
@@ -186,13 +206,31 @@ TEST_F(ProbeBakeScene, AFullDiskLosesNothing) {
     ASSERT_EQ(run(tiny({"scene.toml", "-o", "out.pf_probe"})).exitCode, 0);
     const std::string before = readText(folder / "out.pf_probe");
     // No file may grow beyond 8 blocks of 512 bytes; the write fails as it does on a full disk.
-    const std::string command = "trap '' XFSZ; ulimit -f 8; exec " PFVOX_PROBE_BAKE
+    const std::string command = "ulimit -f 8; exec " PFVOX_PROBE_BAKE
                                 " scene.toml -o out.pf_probe --resolution 64,32,4,6 --samples 32";
     const ProcessSetup setup{.environment = {}, .input = {}, .folder = folder.path()};
     const ProcessResult full = Process({"/bin/sh", "-c", command}, setup).finish();
     EXPECT_EQ(full.exitCode, 3) << full.err;
     EXPECT_THAT(full.err, HasSubstr("out.pf_probe"));
     EXPECT_EQ(readText(folder / "out.pf_probe"), before);
+}
+
+TEST_F(ProbeBakeScene, AReadOnlyOutputIsRefusedBeforeTheBake) {
+    writeScene("scene.toml", "box.pf_vox", kGrid);
+    writeText(folder / "out.pf_probe", "somebody protects this");
+    std::filesystem::permissions(folder / "out.pf_probe", std::filesystem::perms(0444));
+    const ProcessResult refused = run(tiny({"scene.toml", "-o", "out.pf_probe"}));
+    EXPECT_EQ(refused.exitCode, 3);
+    EXPECT_THAT(refused.err, HasSubstr("--force"));
+    EXPECT_FALSE(std::filesystem::exists(folder / "out.pf_probe.journal"));
+    EXPECT_EQ(run(tiny({"scene.toml", "-o", "out.pf_probe", "--force"})).exitCode, 0);
+}
+
+TEST_F(ProbeBakeScene, OutputsMayHaveTheLongestNames) {
+    writeScene("scene.toml", "box.pf_vox", kGrid);
+    const std::string output = std::string(246, 'x') + ".pf_probe";  // its journal's name would be too long
+    EXPECT_EQ(run(tiny({"scene.toml", "-o", output})).exitCode, 0);
+    EXPECT_TRUE(std::filesystem::exists(folder / output));
 }
 
 TEST_F(ProbeBakeScene, TooLittleDeviceMemoryIsNamed) {

@@ -84,6 +84,16 @@ TEST_F(ProbeBake, InfoOfSomethingElseFails) {
     EXPECT_THAT(run({"info", "b.pf_probe"}).err, HasSubstr("but PF_VOX, which vox2pf reads"));
 }
 
+TEST_F(ProbeBake, AFileThatCannotBeReadHasAnObjectToo) {
+    for (const std::string command : {"info", "validate"}) {
+        const ProcessResult result = run({command, "--json", "none.pf_probe"});
+        EXPECT_EQ(result.exitCode, 3);
+        const json object = json::parse(result.out);
+        expectSchema("read-failure", object);
+        EXPECT_EQ(object["error"]["code"], "file-not-found");
+    }
+}
+
 TEST_F(ProbeBake, ValidateFindsDamage) {
     write("a.pf_probe", probeField(probeInfo()));
     EXPECT_EQ(run({"validate", "a.pf_probe"}).exitCode, 0);

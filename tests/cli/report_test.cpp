@@ -83,8 +83,17 @@ TEST_F(Vox2pf, validateNamesWhatIsWrongAndGivesFour) {
     EXPECT_FALSE(object["findings"].empty());
 }
 
-TEST_F(Vox2pf, validateOnAMissingFileGivesThree) {
-    EXPECT_EQ(run({"validate", "none.pf_vox"}).exitCode, 3);
+TEST_F(Vox2pf, aFileThatCannotBeReadHasAnObjectToo) {
+    for (const std::string command : {"info", "validate"}) {
+        EXPECT_EQ(run({command, "none.pf_vox"}).exitCode, 3);
+        const ProcessResult result = run({command, "--json", "none.pf_vox"});
+        EXPECT_EQ(result.exitCode, 3);
+        ASSERT_EQ(linesOf(result.out).size(), 1u) << command;
+        const auto object = nlohmann::json::parse(result.out);
+        EXPECT_THAT(SchemaChecker::check(schema("read-failure"), object), IsEmpty());
+        EXPECT_EQ(object["file"], "none.pf_vox");
+        EXPECT_EQ(object["error"]["code"], "file-not-found");
+    }
 }
 
 TEST(DemoData, generatorReproducesTheCommittedBytes) {

@@ -156,21 +156,80 @@ TEST_F(Vox2pf, resultsThatCannotBeWrittenAreAFailure) {
     EXPECT_THAT(result.err, HasSubstr("standard output"));
 }
 
-TEST_F(Vox2pf, aFolderThatCannotBeSearchedIsNamed) {
+TEST_F(Vox2pf, aFolderThatCannotBeSearchedIsNamedAndTheOthersAreConverted) {
     namespace fs = std::filesystem;
     addSource("assets/a.vox");
+    addSource("assets/z/b.vox");
     fs::create_directories(folder / "assets/locked");
     fs::permissions(folder / "assets/locked", fs::perms::none);
-    std::vector<std::string> command{PFVOX_VOX2PF, "assets", "-o", "out"};
+    std::vector<std::string> command{PFVOX_VOX2PF, "assets", "-o", "out", "--json"};
     if (::geteuid() == 0) {  // who may search everything
         fs::permissions(folder.path(), fs::perms::all);
         command.insert(command.begin(), {"/usr/bin/setpriv", "--reuid=65534", "--regid=65534", "--clear-groups"});
     }
     const ProcessResult result = runProcess(command, {.environment = {}, .input = {}, .folder = folder.path()});
     fs::permissions(folder / "assets/locked", fs::perms::owner_all);
-    EXPECT_EQ(result.exitCode, 3);
+    EXPECT_EQ(result.exitCode, 1);
     EXPECT_THAT(result.err, HasSubstr("assets/locked: cannot search this folder"));
+    EXPECT_EQ(linesOf(result.out).size(), 3u) << "an object for the folder, too";
+    EXPECT_THAT(filesBelow("out"), ::testing::ElementsAre("a.pf_vox", "z/b.pf_vox"));
 }
+
+/// Runs vox2pf in a shell that sets limits first, as a user of its own: root has no limit of processes.
+class LimitedVox2pf : public Vox2pf {
+  protected:
+    ProcessResult limited(const std::string& limits, const std::string& arguments) const {
+        const std::string user = std::to_string(100'000 + ::getpid() % 100'000);
+        std::filesystem::permissions(folder.path(), std::filesystem::perms::all);
+        return runProcess({"/usr/bin/setpriv", "--reuid=" + user, "--regid=65534", "--clear-groups",
+                           "/bin/bash", "-c", limits + "; exec \"$0\" " + arguments, PFVOX_VOX2PF},
+                          {.environment = {}, .input = {}, .folder = folder.path()});
+    }
+    void SetUp() override {
+        if (::geteuid() != 0) GTEST_SKIP() << "only root can become a user of its own";
+        for (int i = 0; i < kAssets; ++i) addSource("in/" + std::to_string(i) + ".vox");
+    }
+    static constexpr int kAssets = 120;
+};
+
+TEST_F(LimitedVox2pf, whereThreadsAreFewItTakesFewer) {
+    const ProcessResult result = limited("ulimit -u 4", "in -o out -j 8");
+    EXPECT_EQ(result.exitCode, 0) << result.err;
+    EXPECT_EQ(filesBelow("out").size(), 1u * kAssets);
+}
+
+TEST_F(LimitedVox2pf, withoutAnyThreadTheRemedyIsNamed) {
+    const ProcessResult result = limited("ulimit -u 1", "in -o out");
+    EXPECT_EQ(result.exitCode, 4);
+    EXPECT_THAT(result.err, HasSubstr("ulimit -u"));
+}
+
+TEST_F(LimitedVox2pf, whereFilesAreFewItWaits) {
+    const ProcessResult result = limited("ulimit -n 24", "in -o out -j 16");
+    EXPECT_EQ(result.exitCode, 0) << result.err;
+    EXPECT_EQ(filesBelow("out").size(), 1u * kAssets);
+}
+
+TEST_F(LimitedVox2pf, whereOpenVdbHasTooFewThreadsTheRemedyIsNamed) {
+    ASSERT_EQ(run({"in/0.vox", "-o", "a.pf_vox"}).exitCode, 0);
+    const ProcessResult exported = run({"export", "a.pf_vox", "-o", "a.vdb"});
+    if (exported.exitCode == 5) GTEST_SKIP() << "without OpenVDB";
+    ASSERT_EQ(exported.exitCode, 0);
+    for (const int threads : {2, 3, 4, 6}) {
+        const ProcessResult result =
+            limited("ulimit -u " + std::to_string(threads), "a.vdb -o b.pf_vox -j 4");
+        EXPECT_EQ(result.exitCode, 4) << threads << ": " << result.err;
+        EXPECT_THAT(result.err, HasSubstr("ulimit -u")) << threads;
+    }
+}
+
+#ifndef __SANITIZE_ADDRESS__
+TEST_F(LimitedVox2pf, whereMemoryIsLittleItIsSaidOrTakenLessOf) {
+    const ProcessResult result = limited("ulimit -v 100000", "in -o out -j 16");
+    EXPECT_THAT(result.exitCode, ::testing::AnyOf(0, 1, 4)) << result.err;
+    EXPECT_TRUE(result.exitCode == 0 || result.err.find("not enough memory") != std::string::npos) << result.err;
+}
+#endif
 
 TEST_F(Vox2pf, filesOfOtherKindsGetTheCommandThatReadsThem) {
     writeText(folder / "old.pf_vox", "what the thesis program wrote, long enough for a header of 64 bytes and more");

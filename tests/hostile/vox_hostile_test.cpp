@@ -58,12 +58,17 @@ TEST(VoxHostile, SmallFileIsValid) {
     EXPECT_EQ(asset->instances.size(), 2u);
 }
 
-TEST(VoxHostile, EveryTruncationIsRefused) {
+TEST(VoxHostile, EveryTruncationIsRefusedOrBetweenChunksSaid) {
     const std::string whole = smallFile();
+    std::size_t refused = 0;
     for (std::size_t size = 0; size < whole.size(); ++size) {
         ImportRun run;
-        EXPECT_FALSE(run(whole.substr(0, size))) << size << " of " << whole.size();
+        const auto asset = run(whole.substr(0, size));
+        refused += asset ? 0u : 1u;
+        EXPECT_TRUE(!asset || run.messageOf("vox-container-size").find("may be incomplete") != std::string::npos)
+            << size;
     }
+    EXPECT_GT(refused, whole.size() - 20u) << "there are few places between chunks";
 }
 
 TEST(VoxHostile, EveryTruncatedRealFileIsRefused) {
@@ -73,7 +78,8 @@ TEST(VoxHostile, EveryTruncatedRealFileIsRefused) {
         if (!whole.starts_with("VOX ")) continue;
         for (std::size_t cut = 0; cut < 100; ++cut) {
             ImportRun run;
-            EXPECT_FALSE(run(whole.substr(0, whole.size() * cut / 100))) << file << " cut to " << cut << " %";
+            EXPECT_TRUE(!run(whole.substr(0, whole.size() * cut / 100)) || run.reported("vox-container-size"))
+                << file << " cut to " << cut << " %";
         }
     }
 }
@@ -119,12 +125,12 @@ TEST(VoxHostile, TeardownIsNamed) {
 
 TEST(VoxHostile, ChunkSizes) {
     const std::string start = "VOX " + voxBytes(150);
-    expectRefused(start + "MAIN" + voxInts({0, 0x7fffffff}), ErrorCode::Truncated, "chunk MAIN @0x8");
+    expectRefused(start + "MAIN" + voxInts({0x7fffffff, 0}), ErrorCode::Truncated, "chunk MAIN @0x8");
     expectRefused(start + "MAIN" + voxInts({0, -1}), ErrorCode::BadValue, "negative");
     expectRefused(start + voxChunk("MAIN", "", "XYZI" + voxInts({-1, 0})), ErrorCode::BadValue,
                   "chunk XYZI @0x14");
     expectRefused(start + voxChunk("MAIN", "", "XYZI" + voxInts({0x7fffffff, 0x7fffffff})),
-                  ErrorCode::Truncated, "4294967294 bytes");
+                  ErrorCode::Truncated, "2147483647 bytes");
     expectRefused(start + voxChunk("MAIN", "", "XYZ"), ErrorCode::Truncated, "chunk header @0x14");
 }
 

@@ -85,9 +85,11 @@ class IndependentVoxReader {
             const std::size_t count = nodes_.empty() ? 1 : models_.size();
             for (std::size_t m = 0; m < count && m < models_.size(); ++m) {
                 Instance instance{int(m), {}};
+                const auto& size = models_[m].size;
                 for (const auto& [p, index] : models_[m].indexAt) {
-                    // The model's minimum corner in our axes: y counts down from size.
-                    instance.worldCells.push_back({{p[0], p[1] - models_[m].size[1], p[2]}, look(index)});
+                    // The middle voxel comes to lie in the origin.
+                    const Cell cell{p[0] - size[0] / 2, p[1] - size[1] / 2, p[2] - size[2] / 2};
+                    instance.worldCells.push_back({cell, look(index)});
                 }
                 result.push_back(instance);
             }

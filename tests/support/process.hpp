@@ -50,8 +50,18 @@ class Process {
         std::vector<std::string> environment = setup.environment;
         for (char** entry = environ; *entry != nullptr; ++entry) environment.emplace_back(*entry);
         std::vector<char*> variables = pointersTo(environment);
+        // What the tests were started with says nothing about the child: in the background, SIGINT may be
+        // ignored.
+        sigset_t defaults;
+        sigemptyset(&defaults);
+        for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGXFSZ}) sigaddset(&defaults, signal);
+        posix_spawnattr_t attributes;
+        posix_spawnattr_init(&attributes);
+        posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF);
+        posix_spawnattr_setsigdefault(&attributes, &defaults);
         const int error =
-            ::posix_spawn(&pid_, arguments[0], &actions, nullptr, arguments.data(), variables.data());
+            ::posix_spawn(&pid_, arguments[0], &actions, &attributes, arguments.data(), variables.data());
+        posix_spawnattr_destroy(&attributes);
         posix_spawn_file_actions_destroy(&actions);
         for (const int end : {in[0], out_[1], err_[1]}) ::close(end);
         if (error != 0) throw std::runtime_error("cannot start " + command.front());

@@ -3,12 +3,19 @@
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <linux/filter.h>
+#include <linux/seccomp.h>
+#include <sys/file.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
 #include <array>
+#include <cerrno>
 #include <csignal>
+#include <cstddef>
 #include <fstream>
 
 namespace pfvox::io {
@@ -36,8 +43,36 @@ class Files : public testing::Test {
         return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder_), fs::directory_iterator{}));
     }
 
+    std::vector<std::string> namesInFolder() const {
+        std::vector<std::string> names;
+        for (const auto& entry : fs::directory_iterator(folder_))
+            names.push_back(entry.path().filename().string());
+        return names;
+    }
+    static mode_t modeOf(const fs::path& file) {
+        struct stat info {};
+        EXPECT_EQ(::stat(file.c_str(), &info), 0);
+        return info.st_mode & 07777u;
+    }
+
     fs::path folder_;
 };
+
+/// From here on this process has no unnamed files, as on file systems that do not know them.
+void forbidUnnamedFiles() {
+    std::array<sock_filter, 6> program{{
+        BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, nr)),
+        BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, SYS_openat, 0, 3),
+        BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, args[2])),
+        BPF_JUMP(BPF_JMP | BPF_JSET | BPF_K, O_TMPFILE & ~O_DIRECTORY, 0, 1),
+        BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ERRNO | EOPNOTSUPP),
+        BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW),
+    }};
+    const sock_fprog filter{.len = program.size(), .filter = program.data()};
+    if (::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0 ||
+        ::prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &filter) != 0)
+        ::_exit(99);
+}
 
 TEST_F(Files, WhatIsWrittenIsRead) {
     const fs::path file = folder_ / "a b" / "ü.bin";
@@ -148,6 +183,98 @@ TEST_F(Files, WriteThatHitsALimitLeavesTheOldFileAndNothingElse) {
     EXPECT_EQ(written.error().code, ErrorCode::FileNotWritable);
     EXPECT_EQ(contentOf(folder_ / "asset"), "old");
     EXPECT_EQ(filesInFolder(), 1u);
+}
+
+TEST_F(Files, AnUnfinishedOutputHasNoNameOrOneThatIsRecognized) {
+    const auto pending = AtomicFile::createWith(folder_ / "asset", bytesOf("new"));
+    ASSERT_TRUE(pending);
+    EXPECT_THAT(namesInFolder(), testing::Each(testing::MatchesRegex("\\.pfvox-[0-9a-f]+\\.tmp")));
+}
+
+TEST_F(Files, WhatDeadWritersLeftIsRemovedWhatLivingOnesHaveStays) {
+    const fs::path dead = folder_ / ".pfvox-0123456789abcdef.tmp";
+    const fs::path living = folder_ / ".pfvox-fedcba9876543210.tmp";
+    const fs::path foreign = folder_ / ".pfvox-notes.tmp";
+    for (const fs::path& file : {dead, living, foreign}) std::ofstream(file) << "bytes";
+    const int writer = ::open(living.c_str(), O_WRONLY | O_CLOEXEC);
+    ASSERT_EQ(::flock(writer, LOCK_EX | LOCK_NB), 0);
+    ASSERT_TRUE(writeFileAtomically(folder_ / "asset", bytesOf("new")));
+    ::close(writer);
+    EXPECT_THAT(namesInFolder(),
+                testing::UnorderedElementsAre("asset", ".pfvox-fedcba9876543210.tmp", ".pfvox-notes.tmp"));
+}
+
+TEST_F(Files, WithoutUnnamedFilesOutputsAreCompleteOrNotThereToo) {
+    const auto child = [&] {
+        forbidUnnamedFiles();
+        bool good = writeFileAtomically(folder_ / "asset", bytesOf("old")).has_value();
+        {
+            auto pending = AtomicFile::createWith(folder_ / "asset", bytesOf("new"));
+            good = good && pending && filesInFolder() == 2 && contentOf(folder_ / "asset") == "old";
+        }
+        good = good && filesInFolder() == 1;
+        good = good && writeFileAtomically(folder_ / "asset", bytesOf("new")).has_value();
+        auto abandoned = AtomicFile::createWith(folder_ / "asset", bytesOf("never"));
+        good = good && abandoned && filesInFolder() == 2;
+        abandonOutputs();
+        good = good && filesInFolder() == 1 && contentOf(folder_ / "asset") == "new";
+        ::_exit(good ? 0 : 1);
+    };
+    EXPECT_EXIT(child(), testing::ExitedWithCode(0), "");
+}
+
+TEST_F(Files, AKilledWriterLeavesNothingThatTheNextOneDoesNotRemove) {
+    const auto killed = [&] {
+        forbidUnnamedFiles();
+        const auto pending = AtomicFile::createWith(folder_ / "asset", bytesOf("half"));
+        ::raise(SIGKILL);
+    };
+    EXPECT_EXIT(killed(), testing::KilledBySignal(SIGKILL), "");
+    EXPECT_EQ(filesInFolder(), 1u);
+    ASSERT_TRUE(writeFileAtomically(folder_ / "asset", bytesOf("whole")));
+    EXPECT_THAT(namesInFolder(), testing::ElementsAre("asset"));
+}
+
+TEST_F(Files, AReplacedFilePassesOnItsPermissionsAndNewOnesFollowTheUmask) {
+    const mode_t before = ::umask(0027);
+    ASSERT_TRUE(writeFileAtomically(folder_ / "asset", bytesOf("old")));
+    EXPECT_EQ(modeOf(folder_ / "asset"), 0640u);
+    fs::permissions(folder_ / "asset", fs::perms(0664));
+    ASSERT_TRUE(writeFileAtomically(folder_ / "asset", bytesOf("new")));
+    ::umask(before);
+    EXPECT_EQ(modeOf(folder_ / "asset"), 0664u);
+}
+
+TEST_F(Files, AReplacedFileKeepsItsOwnerWherePermitted) {
+    if (::geteuid() != 0) GTEST_SKIP() << "only root may give files away";
+    ASSERT_TRUE(writeFileAtomically(folder_ / "asset", bytesOf("old")));
+    ASSERT_EQ(::chown((folder_ / "asset").c_str(), 1234, 2345), 0);
+    ASSERT_TRUE(writeFileAtomically(folder_ / "asset", bytesOf("new")));
+    struct stat info {};
+    ASSERT_EQ(::stat((folder_ / "asset").c_str(), &info), 0);
+    EXPECT_EQ(info.st_uid, 1234u);
+    EXPECT_EQ(info.st_gid, 2345u);
+}
+
+TEST_F(Files, AReadOnlyFileIsReplacedOnlyOnRequest) {
+    ASSERT_TRUE(writeFileAtomically(folder_ / "asset", bytesOf("old")));
+    fs::permissions(folder_ / "asset", fs::perms(0444));
+    const auto refused = writeFileAtomically(folder_ / "asset", bytesOf("new"));
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, ErrorCode::FileNotWritable);
+    EXPECT_THAT(refused.error().message, testing::HasSubstr("chmod"));
+    EXPECT_FALSE(checkReplaceable(folder_ / "asset"));
+    EXPECT_EQ(contentOf(folder_ / "asset"), "old");
+    ASSERT_TRUE(writeFileAtomically(folder_ / "asset", bytesOf("new"), {.replaceReadOnly = true}));
+    EXPECT_EQ(contentOf(folder_ / "asset"), "new");
+    EXPECT_EQ(modeOf(folder_ / "asset"), 0444u);
+}
+
+TEST_F(Files, NamesAreAsLongAsTheFileSystemTakesThem) {
+    const fs::path file = folder_ / std::string(255, 'x');
+    ASSERT_TRUE(writeFileAtomically(file, bytesOf("old")));
+    ASSERT_TRUE(writeFileAtomically(file, bytesOf("new")));
+    EXPECT_EQ(contentOf(file), "new");
 }
 
 }  // namespace

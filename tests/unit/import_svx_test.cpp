@@ -266,6 +266,27 @@ TEST(ImportSvx, ForgivesNamesAndReportsThem) {
     EXPECT_TRUE(imported.reported("svx-extra-slices"));
 }
 
+// AbFab3D's own sphere is written so.
+TEST(ImportSvx, CurlyQuotesAndOpenElementsAreReadWithAWarning) {
+    for (const auto& [left, right] : {std::pair{"\x93", "\x94"}, std::pair{"“", "”"}}) {
+        SvxWriter writer({2, 2, 2});
+        writer.zip.add("manifest.xml", fmt::format(R"(<?xml version="1.0"?>
+<grid gridSizeX="2" gridSizeY="2" gridSizeZ="2" voxelSize={0}0.001{1} slicesOrientation="Y">
+  <channels><channel type="DENSITY" slices="d/%d.png"/></channels>
+  <metadata><entry key="author" value="a > b"><entry key={0}date{1} value="2013"></metadata>
+</grid>)",
+                                                   left, right));
+        const Bytes png = encodePng({.width = 2, .height = 2, .samples = {255, 255, 255, 255}});
+        for (const char* name : {"d/0.png", "d/1.png"}) writer.zip.add(name, png);
+        const Imported imported = importAs(writer.zip.finish(), "a.svx");
+        ASSERT_TRUE(imported.result) << imported.errorText();
+        EXPECT_TRUE(imported.reported("svx-manifest-repaired"));
+        EXPECT_EQ(imported.result->source.voxelSizeMetres, 0.001);
+        EXPECT_EQ(imported.result->models[0].voxelCount(), 8u);
+        EXPECT_THAT(imported.result->source.notes, testing::IsSupersetOf({"author: a > b", "date: 2013"}));
+    }
+}
+
 TEST(ImportSvx, CorpusFilesHaveTheirVoxels) {
     PFVOX_NEEDS_CORPUS("svx");
     const std::filesystem::path root = std::filesystem::path(PFVOX_CORPUS_DIR) / "svx";

@@ -196,6 +196,9 @@ TEST(ImportVdb, ColoursComeFromCd) {
     ASSERT_TRUE(imported.result) << imported.errorText();
     const VoxelAsset& asset = *imported.result;
     ASSERT_EQ(asset.models.size(), 1u) << "the colour grid itself is no model beside a density";
+    const auto clamped = std::ranges::find(imported.diagnostics, "vdb-colors-clamped", &Diagnostic::id);
+    ASSERT_NE(clamped, imported.diagnostics.end());
+    EXPECT_THAT(clamped->message, testing::StartsWith("2 values of grid \"Cd\""));
     EXPECT_EQ(asset.models[0].voxelCount(), 4u + (1u << 21));
     const auto colorAt = [&](glm::ivec3 v) {
         return glm::ivec3{asset.materials.at(*asset.models[0].at(v)).baseColor};

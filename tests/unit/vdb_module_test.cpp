@@ -1,6 +1,8 @@
 // The module that knows OpenVDB: found, refused and missed (docs/decisions/010-vdb-module.md).
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <fstream>
 #include <thread>
@@ -54,6 +56,24 @@ TEST(VdbModule, FileThatIsNoLibraryIsRefused) {
     std::ofstream(folder / "pfvox_vdb.so") << "not a library";
     EXPECT_THAT(refusal({folder.path()}), HasSubstr("pfvox_vdb.so"));
 }
+
+#ifndef __SANITIZE_ADDRESS__
+/// Opens the module with as much address space as this process has already.
+[[noreturn]] void openWithoutMemory() {
+    std::size_t pages = 0;
+    std::ifstream("/proc/self/statm") >> pages;
+    rlimit limit{};
+    limit.rlim_cur = limit.rlim_max = (pages + 64) * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
+    ::setrlimit(RLIMIT_AS, &limit);
+    const auto module = openVdbModule(moduleFolders());
+    ::_exit(!module && module.error().code == ErrorCode::LimitExceeded ? 0 : 1);
+}
+
+TEST(VdbModule, TooLittleMemoryIsNotAMissingLibrary) {
+    GTEST_FLAG_SET(death_test_style, "threadsafe");  // in a process that has not opened it
+    EXPECT_EXIT(openWithoutMemory(), testing::ExitedWithCode(0), "");
+}
+#endif
 
 TEST(VdbModule, FirstFolderThatHasItDecides) {
     const TempFolder empty;

@@ -53,12 +53,31 @@ std::vector<std::uint64_t> voxelCounts(const VoxelAsset& asset) {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-TEST(VoxScene, FileWithoutGraphLiesInTheOrigin) {
+TEST(VoxScene, FileWithoutGraphHasItsMiddleInTheOrigin) {
+    ImportRun run;
+    const auto asset = run(VoxWriter().model({3, 4, 7}, {{0, 0, 0, 1}}).finish());
+    ASSERT_TRUE(asset);
+    ASSERT_EQ(asset->instances.size(), 1u);
+    const Affine& placed = asset->instances[0].worldFromModel;
+    // MagicaVoxel's pivot is the middle voxel (1, 2, 3); its y points away from where our z points to.
+    EXPECT_EQ(placed[3], (glm::dvec3{-1, -3, -2} * kDefaultVoxelSizeMetres));
+    EXPECT_EQ(placed[0], (glm::dvec3{kDefaultVoxelSizeMetres, 0, 0}));
+    // As with a graph whose transform moves nothing.
+    const auto inGraph = ImportRun()(VoxWriter()
+                                         .model({3, 4, 7}, {{0, 0, 0, 1}})
+                                         .transform({.id = 0, .child = 1})
+                                         .shape({.id = 1})
+                                         .finish());
+    ASSERT_TRUE(inGraph);
+    EXPECT_EQ(inGraph->instances[0].worldFromModel, placed);
+    EXPECT_TRUE(asset->models[0].at({0, 0, 3}));
+    EXPECT_EQ(asset->source.format, "vox");
+}
+
+TEST(VoxScene, CornerOfASmallModelWithoutGraph) {
     ImportRun run;
     const auto asset = run(VoxWriter().model({3, 3, 3}, {{0, 0, 0, 1}}).finish());
     ASSERT_TRUE(asset);
-    ASSERT_EQ(asset->instances.size(), 1u);
-    EXPECT_EQ(asset->instances[0].worldFromModel, Affine{kDefaultVoxelSizeMetres});
     EXPECT_TRUE(asset->models[0].at({0, 0, 2}));
     EXPECT_EQ(asset->source.format, "vox");
 }
@@ -120,8 +139,10 @@ TEST(VoxScene, RootThatIsItsOwnChildGivesEveryModelOnce) {
     const auto asset = run(models(2).transform({.id = 0, .child = 0}).finish());
     ASSERT_TRUE(asset) << describe(asset.error());
     EXPECT_THAT(voxelCounts(*asset), ElementsAre(1, 2));
-    EXPECT_EQ(asset->instances.size(), 2u);
-    EXPECT_EQ(asset->instances[0].worldFromModel, Affine{kDefaultVoxelSizeMetres});
+    ASSERT_EQ(asset->instances.size(), 2u);
+    for (const Instance& instance : asset->instances)
+        EXPECT_EQ(instance.worldFromModel[3], (glm::dvec3{-1, 0, -1} * kDefaultVoxelSizeMetres))
+            << "the middle of 2 x 1 x 1";
     EXPECT_TRUE(run.reported("vox-graph-without-shapes"));
 }
 
@@ -261,6 +282,47 @@ TEST(VoxScene, EmptyModelsKeepTheirId) {
     const auto asset = run(scene(writer, {{}, {}}, {0, 1}).finish());
     ASSERT_TRUE(asset) << describe(asset.error());
     EXPECT_THAT(voxelCounts(*asset), ElementsAre(0, 1));
+    EXPECT_THAT(run.messageOf("empty-models"), HasSubstr("1 of 2 models"));
+}
+
+TEST(VoxScene, AFileOfEmptyModelsIsSaid) {
+    ImportRun run;
+    ASSERT_TRUE(run(VoxWriter().model({2, 2, 2}, {}).finish()));
+    EXPECT_THAT(run.messageOf("empty-models"), HasSubstr("no model of the file has a voxel"));
+}
+
+TEST(VoxScene, AlphaOfColorsInUseIsSaid) {
+    std::string colors(1024, '\xff');
+    colors[4 * 1 + 3] = '\x80';  // index 2
+    colors[4 * 6 + 3] = '\0';    // index 7, which no voxel has
+    ImportRun run;
+    ASSERT_TRUE(
+        run(VoxWriter().model({2, 1, 1}, {{0, 0, 0, 1}, {1, 0, 0, 2}}).chunk("RGBA", colors).finish()));
+    EXPECT_THAT(run.messageOf("vox-palette-alpha"), HasSubstr("1 of the colors used"));
+}
+
+TEST(VoxScene, NamesInOtherCodePagesBecomeUtf8) {
+    VoxWriter writer = models(1);
+    writer.transform({.id = 0, .child = 1, .attributes = {{"_name", "Fen\xeatre \x93x\x94"}}})
+        .shape({.id = 1});
+    writer.chunk("NOTE", voxInts({1}) + voxString("\xff"));
+    ImportRun run;
+    const auto asset = run(writer.finish());
+    ASSERT_TRUE(asset) << describe(asset.error());
+    EXPECT_EQ(asset->instances[0].name, "Fenêtre “x”");
+    EXPECT_EQ(asset->models[0].name, "Fenêtre “x”");
+    EXPECT_THAT(asset->source.notes, ElementsAre(HasSubstr("ÿ")));
+    EXPECT_THAT(run.messageOf("name-encoding"), HasSubstr("3 names"));
+}
+
+TEST(VoxScene, NamesInUtf8StayAsTheyAre) {
+    VoxWriter writer = models(1);
+    writer.transform({.id = 0, .child = 1, .attributes = {{"_name", "🏠 dům"}}}).shape({.id = 1});
+    ImportRun run;
+    const auto asset = run(writer.finish());
+    ASSERT_TRUE(asset);
+    EXPECT_EQ(asset->instances[0].name, "🏠 dům");
+    EXPECT_FALSE(run.reported("name-encoding"));
 }
 
 TEST(VoxScene, EdgesBeyondAByteMoveThePivotOnly) {
@@ -289,6 +351,43 @@ TEST(VoxScene, ChildrenOfChunksAreSteppedOver) {
                                test::voxChunk("SIZE", voxInts({1, 1, 1})) +
                                test::voxChunk("XYZI", voxInts({1, 0x01000000}));
     EXPECT_TRUE(run("VOX " + voxBytes(150) + test::voxChunk("MAIN", "own content", chunks)));
+}
+
+/// As the crate dot_vox 4.1 to 5.1 wrote files of several models: PACK claims a size of children that it has
+/// not.
+std::string packedWithChildren(int count, std::int32_t childrenBytes) {
+    std::string chunks = "PACK" + voxInts({4, childrenBytes, count});
+    for (int m = 0; m < count; ++m)
+        chunks +=
+            test::voxChunk("SIZE", voxInts({2, 1, 1})) + test::voxChunk("XYZI", voxInts({1, 0x01000000}));
+    return chunks;
+}
+
+TEST(VoxScene, ChunksAreBelievedMoreThanTheSizeOfPack) {
+    // Into the middle of a chunk, and over two whole models.
+    for (const std::int32_t claimed : {12, 44, 2 * (24 + 20), 0x7fffffff}) {
+        ImportRun run;
+        run.settings.includeHidden = true;
+        const auto asset =
+            run("VOX " + voxBytes(150) + test::voxChunk("MAIN", "", packedWithChildren(3, claimed)));
+        ASSERT_TRUE(asset) << claimed << ": " << describe(asset.error());
+        EXPECT_THAT(voxelCounts(*asset), ElementsAre(1, 1, 1)) << claimed;
+        EXPECT_THAT(run.messageOf("vox-container-size"), HasSubstr("PACK")) << claimed;
+    }
+}
+
+TEST(VoxScene, ChunksAreBelievedMoreThanTheSizeOfMain) {
+    const std::string chunks =
+        test::voxChunk("SIZE", voxInts({2, 1, 1})) + test::voxChunk("XYZI", voxInts({1, 0x01000000}));
+    const auto size = static_cast<std::int32_t>(chunks.size());
+    for (const auto& [content, children] : std::vector<std::pair<std::int32_t, std::int32_t>>{
+             {0, 0}, {0, 24}, {0, 30}, {0, size + 1000}, {0, 0x7fffffff}, {size, 0}}) {
+        ImportRun run;
+        const auto asset = run("VOX " + voxBytes(150) + "MAIN" + voxInts({content, children}) + chunks);
+        ASSERT_TRUE(asset) << children << ": " << describe(asset.error());
+        EXPECT_THAT(voxelCounts(*asset), ElementsAre(1)) << children;
+        EXPECT_TRUE(run.reported("vox-container-size")) << content << " " << children;
+    }
 }
 
 TEST(VoxScene, VersionsAndTrailingBytes) {

@@ -10,8 +10,11 @@
 #include <deque>
 #include <mutex>
 #include <optional>
+#include <system_error>
 #include <thread>
 #include <vector>
+
+#include "common/resources.hpp"
 
 namespace pfvox::tools {
 
@@ -43,15 +46,44 @@ class Sequencer {
     const BatchItem& item_;
 };
 
+/// What a batch may take of the system at once.
+struct BatchRoom {
+    /// As many waits as a disk and its journal can join.
+    static constexpr std::size_t kMaxCommitters = 16;
+    /// No more files than that are written and not yet in their places.
+    static constexpr std::size_t kMaxWaiting = 32;
+
+    int threads = 1;             ///< that compute, the caller's included
+    std::size_t committers = 0;  ///< threads that wait for the disk; 0: those that compute do
+    std::size_t waiting = kMaxWaiting;
+};
+
+BatchRoom roomFor(int threads, std::size_t commits) {
+    BatchRoom room{.threads = std::max(threads, 1), .committers = std::min(commits, BatchRoom::kMaxCommitters)};
+    const int wanted = room.threads - 1 + static_cast<int>(room.committers);
+    if (const int startable = affordableThreads(wanted); startable < wanted) {
+        room.threads = 1 + std::min(room.threads - 1, (startable + 1) / 2);
+        room.committers = std::min(room.committers, static_cast<std::size_t>(startable - (room.threads - 1)));
+    }
+    // An asset at work has its source open, or its output; each that waits has its output.
+    const std::size_t files = openableFiles();
+    room.threads =
+        static_cast<int>(std::clamp<std::size_t>(files / 4, 1, static_cast<std::size_t>(room.threads)));
+    const std::size_t left = files - std::min(files, 2 * static_cast<std::size_t>(room.threads));
+    room.committers = std::min(room.committers, left / 2);
+    room.waiting = std::clamp<std::size_t>(left / 2, 1, BatchRoom::kMaxWaiting);
+    return room;
+}
+
 /// Runs the commits of a batch on threads that wait for the disk most of the time.
 class Committers {
   public:
-    /// As many waits as a disk and its journal can join, and no more files than that which an interrupt has to wait for.
-    static constexpr std::size_t kThreads = 16;
-    static constexpr std::size_t kMaxWaiting = 32;
-
-    Committers(std::size_t count, std::function<void(std::size_t)> commit) : commit_(std::move(commit)) {
-        for (std::size_t i = 0; i < std::min(kThreads, count); ++i) threads_.emplace_back([this] { run(); });
+    Committers(const BatchRoom& room, std::function<void(std::size_t)> commit)
+        : maxWaiting_(room.waiting), commit_(std::move(commit)) {
+        try {
+            for (std::size_t i = 0; i < room.committers; ++i) threads_.emplace_back([this] { run(); });
+        } catch (const std::system_error&) {  // others took the threads that there were
+        }
     }
     Committers(const Committers&) = delete;
     Committers& operator=(const Committers&) = delete;
@@ -62,12 +94,13 @@ class Committers {
             isClosed_ = true;
         }
         changed_.notify_all();
-        for (std::thread& thread : threads_) thread.join();
     }
+
+    bool isRunning() const { return !threads_.empty(); }
 
     void add(std::size_t index) {
         std::unique_lock lock(mutex_);
-        changed_.wait(lock, [&] { return waiting_.size() < kMaxWaiting; });
+        changed_.wait(lock, [&] { return waiting_.size() < maxWaiting_; });
         waiting_.push_back(index);
         lock.unlock();
         changed_.notify_all();
@@ -88,24 +121,25 @@ class Committers {
         }
     }
 
+    std::size_t maxWaiting_;
     std::function<void(std::size_t)> commit_;
     std::mutex mutex_;
     std::condition_variable changed_;
     std::deque<std::size_t> waiting_;
     bool isClosed_ = false;
-    std::vector<std::thread> threads_;
+    std::vector<std::jthread> threads_;  ///< last: they are joined before the rest goes
 };
 
 }  // namespace
 
 std::size_t runBatch(std::size_t count, const BatchSettings& settings, const BatchItem& item) {
-    const int threads = settings.threads > 0 ? settings.threads : tbb::task_arena::automatic;
+    const int wanted = settings.threads > 0 ? settings.threads : tbb::this_task_arena::max_concurrency();
+    // One asset has nothing to overlap with.
+    const BatchRoom room = roomFor(wanted, item.commit && count > 1 ? count : 0);
     // Lets -j ask for more threads than there are processors, which the determinism tests do.
-    const tbb::global_control control(
-        tbb::global_control::max_allowed_parallelism,
-        settings.threads > 0 ? static_cast<std::size_t>(settings.threads)
-                             : static_cast<std::size_t>(tbb::this_task_arena::max_concurrency()));
-    tbb::task_arena arena(threads);
+    const tbb::global_control control(tbb::global_control::max_allowed_parallelism,
+                                      static_cast<std::size_t>(room.threads));
+    tbb::task_arena arena(room.threads);
     Sequencer sequencer(count, item);
     std::atomic<std::size_t> started{0};
     std::atomic<std::size_t> next{0};
@@ -114,10 +148,9 @@ std::size_t runBatch(std::size_t count, const BatchSettings& settings, const Bat
         if (!good && settings.failFast) stop = true;
         sequencer.arrived(index);
     };
-    // One asset has nothing to overlap with.
     std::optional<Committers> committers;
-    if (item.commit && count > 1)
-        committers.emplace(count, [&](std::size_t index) { done(index, item.commit(index)); });
+    if (room.committers > 0)
+        committers.emplace(room, [&](std::size_t index) { done(index, item.commit(index)); });
     arena.execute([&] {
         tbb::parallel_for(
             std::size_t{0}, count,
@@ -129,7 +162,7 @@ std::size_t runBatch(std::size_t count, const BatchSettings& settings, const Bat
                 bool good = false;
                 // Isolated: a thread that waits inside an asset must not begin another one on top of it.
                 tbb::this_task_arena::isolate([&] { good = item.work(index); });
-                if (good && committers) return committers->add(index);
+                if (good && committers && committers->isRunning()) return committers->add(index);
                 done(index, good && (!item.commit || item.commit(index)));
             },
             tbb::simple_partitioner());

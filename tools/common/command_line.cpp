@@ -79,7 +79,7 @@ ExitCode usageError(const CLI::App& command, const std::string& message) {
     const CLI::App* tool = command.get_parent();
     const std::string name =
         tool == nullptr ? command.get_name() : tool->get_name() + " " + command.get_name();
-    print(stderr, fmt::format("error: {}\nrun `{} --help` for the options\n", message, name));
+    print(stderr, fmt::format("error: {}\nrun `{} --help` for the options\n", escaped(message), name));
     return ExitCode::Usage;
 }
 

@@ -2,8 +2,6 @@
 
 #include <pfvox/files.hpp>
 
-#include "common/interrupt.hpp"
-
 namespace pfvox::tools {
 
 namespace {
@@ -32,7 +30,6 @@ std::string depfileText(const std::vector<DepfileRule>& rules) {
 
 Result<void> writeDepfile(const std::filesystem::path& file, const std::vector<DepfileRule>& rules) {
     const std::string text = depfileText(rules);
-    const WriteGuard guard;
     return io::writeFileAtomically(file, std::as_bytes(std::span(text)));
 }
 

@@ -21,6 +21,10 @@ struct ReadOptions {
 /// `extension` is that of the files which the command reads.
 void addReadOptions(CLI::App& command, ReadOptions& options, const std::string& extension);
 
+/// Says that a file cannot be read, with --json as an object, too (docs/schema/read-failure.schema.json).
+/// Returns the code.
+ErrorCode reportFailure(Reporter& reporter, const std::filesystem::path& file, Error error);
+
 /// What happens with one file: returns the code of its failure, or nothing when all is well.
 using FileVisitor =
     std::function<std::optional<ErrorCode>(const std::filesystem::path&, const Limits&, Reporter&)>;

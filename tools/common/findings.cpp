@@ -26,18 +26,18 @@ Json findingsJson(const std::filesystem::path& file, const std::vector<Finding>&
 std::string findingsText(const std::filesystem::path& file, const std::vector<Finding>& findings,
                          const Reporter& reporter) {
     using Style = Reporter::Style;
-    if (findings.empty())
-        return fmt::format("{}: {}\n", file.string(), reporter.styled(Style::Good, "valid"));
+    const std::string name = escaped(file.string());
+    if (findings.empty()) return fmt::format("{}: {}\n", name, reporter.styled(Style::Good, "valid"));
     std::string text;
     for (const Finding& finding : findings) {
         const std::string offset = finding.offsetBytes ? fmt::format("@0x{:x}", *finding.offsetBytes) : "";
         const bool both = !finding.context.empty() && !offset.empty();
         const std::string place = finding.context + (both ? " " : "") + offset;
-        text += fmt::format("{}: {}{}{} [{}]\n", file.string(), place, place.empty() ? "" : ": ",
-                            finding.message, finding.id);
+        text += fmt::format("{}: {}{}{} [{}]\n", name, escaped(place), place.empty() ? "" : ": ",
+                            escaped(finding.message), finding.id);
     }
-    return text + fmt::format("{}: {}\n", file.string(),
-                              reporter.styled(Style::Bad, plural(findings.size(), "finding")));
+    return text +
+           fmt::format("{}: {}\n", name, reporter.styled(Style::Bad, plural(findings.size(), "finding")));
 }
 
 }  // namespace pfvox::tools

@@ -7,6 +7,8 @@
 #include <iostream>
 #include <set>
 
+#include "common/text.hpp"
+
 namespace pfvox::tools {
 
 namespace fs = std::filesystem;
@@ -28,7 +30,7 @@ std::vector<std::string> nonEmptyLines(std::istream& stream) {
 
 class Collector {
   public:
-    explicit Collector(const InputQuery& query) : query_(query) {
+    Collector(const InputQuery& query, Diagnostics& diagnostics) : query_(query), diagnostics_(diagnostics) {
         if (!query.skippedFolder.empty()) skipped_ = canonicalName(query.skippedFolder);
     }
 
@@ -64,31 +66,62 @@ class Collector {
     }
 
     Result<void> addFolder(const fs::path& folder) {
-        std::vector<fs::path> found;
-        PFVOX_CHECK(search(folder, found));
+        std::vector<InputFile> found;
+        search(folder, folder, found);
+        noteLeftOut(folder);
         if (found.empty())
             return failOn(ErrorCode::NothingToConvert, folder, "no input files in this folder");
-        std::ranges::sort(found);
-        for (const fs::path& file : found) {
-            add({.file = file, .relative = file.lexically_relative(folder), .fromFolder = true});
-        }
+        std::ranges::sort(found, {}, &InputFile::file);
+        for (InputFile& input : found) add(std::move(input));
         return {};
     }
 
     /// Folder by folder, since recursive_directory_iterator does not tell in which one it failed.
-    Result<void> search(const fs::path& folder, std::vector<fs::path>& found) const {
+    void search(const fs::path& folder, const fs::path& root, std::vector<InputFile>& found) {
+        const auto inputAt = [&](const fs::path& path) {
+            return InputFile{.file = path, .relative = path.lexically_relative(root), .fromFolder = true};
+        };
         std::error_code error;
         auto entry = fs::directory_iterator(folder, error);
         for (; !error && entry != fs::directory_iterator(); entry.increment(error)) {
             std::error_code ignored;
             if (!entry->is_directory(ignored)) {
-                if (query_.wanted(entry->path()) && entry->is_regular_file(ignored)) found.push_back(entry->path());
-            } else if (!entry->is_symlink(ignored) && !isSkipped(entry->path())) {
-                PFVOX_CHECK(search(entry->path(), found));
+                if (isMacMetadata(entry->path())) {
+                    ++macMetadata_;
+                } else if (query_.wanted(entry->path()) && entry->is_regular_file(ignored)) {
+                    found.push_back(inputAt(entry->path()));
+                }
+            } else if (entry->is_symlink(ignored)) {
+                ++linkedFolders_;
+            } else if (!isSkipped(entry->path())) {
+                search(entry->path(), root, found);
             }
         }
-        if (!error) return {};
-        return failOn(ErrorCode::FileNotReadable, folder, "cannot search this folder: " + error.message());
+        if (!error) return;
+        found.push_back(inputAt(folder));
+        found.back().fault = Error{.code = ErrorCode::FileNotReadable,
+                                   .message = "cannot search this folder: " + error.message(),
+                                   .file = folder};
+    }
+
+    /// Whether this stands beside a file that is wanted.
+    bool isMacMetadata(const fs::path& file) const {
+        const std::string name = file.filename().string();
+        return name.starts_with("._") && query_.wanted(file.parent_path() / name.substr(2));
+    }
+
+    void noteLeftOut(const fs::path& folder) {
+        if (macMetadata_ > 0) {
+            diagnostics_.note("macos-metadata",
+                              fmt::format("{}: {} that macOS keeps beside others (._*) left out",
+                                          folder.string(), plural(macMetadata_, "file")));
+        }
+        if (linkedFolders_ > 0) {
+            diagnostics_.warn("linked-folder",
+                              fmt::format("{}: {} not searched: name what it leads to as an input, too",
+                                          folder.string(), plural(linkedFolders_, "linked folder")));
+        }
+        macMetadata_ = linkedFolders_ = 0;
     }
 
     bool isSkipped(const fs::path& folder) const {
@@ -100,6 +133,9 @@ class Collector {
     }
 
     const InputQuery& query_;
+    Diagnostics& diagnostics_;
+    std::size_t macMetadata_ = 0;
+    std::size_t linkedFolders_ = 0;
     fs::path skipped_;
     std::vector<InputFile> files_;
     std::set<fs::path> seen_;
@@ -107,8 +143,9 @@ class Collector {
 
 }  // namespace
 
-Result<std::vector<InputFile>> collectInputs(const std::vector<std::string>& words, const InputQuery& query) {
-    Collector collector(query);
+Result<std::vector<InputFile>> collectInputs(const std::vector<std::string>& words, const InputQuery& query,
+                                             Diagnostics& diagnostics) {
+    Collector collector(query, diagnostics);
     for (const std::string& word : words) PFVOX_CHECK(collector.addWord(word));
     return collector.take();
 }

@@ -7,6 +7,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <pfvox/error.hpp>
 #include <string>
 #include <vector>
@@ -18,6 +19,8 @@ struct InputFile {
     std::filesystem::path
         relative;  ///< below the folder that was named; the bare file name where a file was named
     bool fromFolder = false;
+    std::optional<Error> fault =
+        {};  ///< a folder that cannot be searched: an input that fails, so that others go on
 };
 
 struct InputQuery {
@@ -25,8 +28,10 @@ struct InputQuery {
     std::filesystem::path skippedFolder;  ///< a folder that is not searched; may be empty
 };
 
-/// Errors: FileNotFound, FileNotReadable; NothingToConvert for a folder or list without any input.
-Result<std::vector<InputFile>> collectInputs(const std::vector<std::string>& words, const InputQuery& query);
+/// What folders hold and is left out is noted (macos-metadata: files "._x" that macOS writes beside x;
+/// linked-folder). Errors: FileNotFound for a list; NothingToConvert for a folder or list without any input.
+Result<std::vector<InputFile>> collectInputs(const std::vector<std::string>& words, const InputQuery& query,
+                                             Diagnostics& diagnostics);
 
 /// The path as everyone on this machine would spell it: absolute and without "." and "..".
 std::filesystem::path canonicalName(const std::filesystem::path& path);

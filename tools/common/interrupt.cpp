@@ -1,11 +1,12 @@
 #include "common/interrupt.hpp"
 
 #include <unistd.h>
-#include <condition_variable>
+
 #include <csignal>
 #include <mutex>
+#include <pfvox/files.hpp>
+#include <string_view>
 #include <thread>
-#include <utility>
 
 #include "common/exit_code.hpp"
 
@@ -13,62 +14,72 @@ namespace pfvox::tools {
 
 namespace {
 
-/// Counts those who write. Once a signal came, new writers wait for the end of the process: they could keep it from
-/// coming for ever.
-struct Gate {
+struct State {
     std::mutex mutex;
-    std::condition_variable changed;
-    int writers = 0;
-    bool isEnding = false;
+    int orderlyStops = 0;
+    bool isInterrupted = false;
 };
 
-Gate& writeGate() {
+State& state() {
     // Never destroyed: the waiting thread may still use it while the process exits.
-    static auto* gate = new Gate;
-    return *gate;
+    static auto* all = new State;
+    return *all;
+}
+
+/// The signals that end a program, without those that whoever started it wants to be ignored.
+sigset_t endingSignals() {
+    sigset_t signals;
+    sigemptyset(&signals);
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+        struct sigaction now {};
+        if (::sigaction(signal, nullptr, &now) == 0 && now.sa_handler != SIG_IGN) sigaddset(&signals, signal);
+    }
+    return signals;
+}
+
+[[noreturn]] void endNow() {
+    // Where a file system or a terminal hangs, the next signal ends the program without us.
+    const sigset_t signals = endingSignals();
+    pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
+    io::abandonOutputs();
+    // Not through stdio: another thread may hold its lock for ever.
+    constexpr std::string_view kLastWords = "\ninterrupted; every output is either finished or as it was\n";
+    [[maybe_unused]] const ssize_t ignored = ::write(STDERR_FILENO, kLastWords.data(), kLastWords.size());
+    ::_exit(static_cast<int>(ExitCode::Interrupted));
+}
+
+void waitForSignals(const sigset_t& signals) {
+    while (true) {
+        int received = 0;
+        sigwait(&signals, &received);
+        const std::scoped_lock lock(state().mutex);
+        if (state().isInterrupted || state().orderlyStops == 0) endNow();
+        state().isInterrupted = true;
+    }
 }
 
 }  // namespace
 
-void exitOnInterrupt(std::function<void()> lastWords) {
+void exitOnInterrupt() {
     // Every thread inherits the mask, so only the waiting thread ever sees these signals.
-    sigset_t signals;
-    sigemptyset(&signals);
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&signals, signal);
+    const sigset_t signals = endingSignals();
     pthread_sigmask(SIG_BLOCK, &signals, nullptr);
-    std::thread([signals, lastWords = std::move(lastWords)] {
-        int received = 0;
-        sigwait(&signals, &received);
-        Gate& gate = writeGate();
-        std::unique_lock lock(gate.mutex);
-        gate.isEnding = true;
-        gate.changed.wait(lock, [&] { return gate.writers == 0; });
-        lastWords();
-        ::_exit(static_cast<int>(ExitCode::Interrupted));
-    }).detach();
+    std::thread(waitForSignals, signals).detach();
 }
 
 bool isInterrupted() {
-    Gate& gate = writeGate();
-    const std::scoped_lock lock(gate.mutex);
-    return gate.isEnding;
+    const std::scoped_lock lock(state().mutex);
+    return state().isInterrupted;
 }
 
-WriteGuard::WriteGuard() {
-    Gate& gate = writeGate();
-    std::unique_lock lock(gate.mutex);
-    gate.changed.wait(lock, [&] { return !gate.isEnding; });
-    ++gate.writers;
+OrderlyStop::OrderlyStop() {
+    const std::scoped_lock lock(state().mutex);
+    ++state().orderlyStops;
 }
 
-WriteGuard::~WriteGuard() {
-    if (!holds_) return;
-    Gate& gate = writeGate();
-    {
-        const std::scoped_lock lock(gate.mutex);
-        --gate.writers;
-    }
-    gate.changed.notify_all();
+OrderlyStop::~OrderlyStop() {
+    const std::scoped_lock lock(state().mutex);
+    if (--state().orderlyStops == 0 && state().isInterrupted) endNow();
 }
 
 }  // namespace pfvox::tools

@@ -1,32 +1,27 @@
-// Interrupt: Ctrl-C and termination signals end a tool at once, with exit code 130 and no half-written file.
+// Interrupt: Ctrl-C and termination signals end a program with exit code 130 and no half-written file.
 //
-// A thread of its own waits for SIGINT, SIGTERM and SIGHUP. Whoever writes an output holds a WriteGuard; the
-// process ends only when nobody does, so that neither a torn output nor a forgotten temporary file stays
-// behind.
+// A thread of its own waits for SIGINT, SIGTERM and SIGHUP, but for those that were ignored when the program
+// started (nohup, jobs in the background). What is being written is given up (io::abandonOutputs): writers
+// need no guard. Work that can stop in order holds an OrderlyStop; the second signal ends the program all the
+// same.
 #pragma once
-
-#include <functional>
-#include <utility>
 
 namespace pfvox::tools {
 
-/// To be called once, before any other thread starts. `lastWords` runs in the waiting thread just before the
-/// process ends; it may print.
-void exitOnInterrupt(std::function<void()> lastWords);
+/// To be called once, before any other thread starts. Throws std::system_error when no thread can be started.
+void exitOnInterrupt();
 
-/// Whether a signal has come. Whoever holds a WriteGuard for long asks, and comes to an end.
+/// Whether a signal has come.
 bool isInterrupted();
 
-/// Keeps an interrupt from ending the process while it lives. May be handed from thread to thread.
-class WriteGuard {
+/// While one lives, the first signal does not end the program: whoever holds it asks isInterrupted() and
+/// comes to an end. The program then ends with the last of them.
+class OrderlyStop {
   public:
-    WriteGuard();
-    WriteGuard(WriteGuard&& other) noexcept : holds_(std::exchange(other.holds_, false)) {}
-    WriteGuard& operator=(WriteGuard&&) = delete;
-    ~WriteGuard();
-
-  private:
-    bool holds_ = true;
+    OrderlyStop();
+    OrderlyStop(const OrderlyStop&) = delete;
+    OrderlyStop& operator=(const OrderlyStop&) = delete;
+    ~OrderlyStop();
 };
 
 }  // namespace pfvox::tools

@@ -49,6 +49,10 @@ tl::expected<std::vector<InputOutput>, std::string> pairOutputs(
     std::vector<InputOutput> pairs;
     std::map<fs::path, fs::path> inputOfOutput;
     for (InputFile& input : inputs) {
+        if (input.fault) {
+            pairs.push_back({.input = input, .output = output / input.relative});
+            continue;
+        }
         const bool keeps = keepsName && keepsName(input);
         if (keeps && toFile) {
             return tl::make_unexpected(

@@ -6,6 +6,11 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <map>
+#include <tuple>
+#include <utility>
+
+#include "common/text.hpp"
 
 namespace pfvox::tools {
 
@@ -36,6 +41,31 @@ const char* codeOf(Reporter::Style style) {
     return "";
 }
 
+/// How many bytes at the front are a line end or a code of ours.
+std::size_t ownCode(std::string_view text) {
+    if (text.starts_with('\n')) return 1;
+    for (const std::string_view code : {kReset, "\x1b[1m", "\x1b[32m", "\x1b[1;31m", "\x1b[2m"}) {
+        if (text.starts_with(code)) return code.size();
+    }
+    return 0;
+}
+
+/// Lines as they are, but for control characters of names that somebody forgot to escape.
+std::string withoutForeignCodes(std::string_view text) {
+    std::string shown;
+    while (!text.empty()) {
+        std::size_t bytes = ownCode(text);
+        if (bytes != 0) {
+            shown += text.substr(0, bytes);
+        } else {
+            bytes = std::min(text.find_first_of("\n\x1b", 1), text.size());
+            shown += escaped(text.substr(0, bytes));
+        }
+        text.remove_prefix(bytes);
+    }
+    return shown;
+}
+
 void write(std::FILE* stream, std::string_view text) {
     std::fwrite(text.data(), 1, text.size(), stream);
 }
@@ -52,7 +82,7 @@ void Reporter::result(std::string_view text) {
     if (settings_.verbosity == Verbosity::Quiet || settings_.json) return;
     const std::scoped_lock lock(mutex_);
     clearProgressLocked();
-    write(stdout, text);
+    write(stdout, withoutForeignCodes(text));
     std::fflush(stdout);
 }
 
@@ -65,8 +95,8 @@ void Reporter::jsonLine(std::string_view json) {
 }
 
 void Reporter::message(std::string_view label, const char* colorCode, std::string_view text) {
-    const std::string line = colorErr_ ? fmt::format("{}{}:{} {}\n", colorCode, label, kReset, text)
-                                       : fmt::format("{}: {}\n", label, text);
+    const std::string line = colorErr_ ? fmt::format("{}{}:{} {}\n", colorCode, label, kReset, escaped(text))
+                                       : fmt::format("{}: {}\n", label, escaped(text));
     const std::scoped_lock lock(mutex_);
     clearProgressLocked();
     write(stderr, line);
@@ -81,17 +111,23 @@ void Reporter::error(std::string_view text) {
 }
 
 void Reporter::diagnostics(const std::filesystem::path& file, std::span<const Diagnostic> entries) {
+    // Equal ones are one line, with the place of the first. Few kinds are many entries.
+    std::map<std::tuple<Severity, std::string_view, std::string_view>, std::size_t> counts;
+    for (const Diagnostic& entry : entries) ++counts[{entry.severity, entry.id, entry.message}];
     for (const Diagnostic& entry : entries) {
         const bool isWarning = entry.severity == Severity::Warning;
         if (settings_.verbosity == Verbosity::Quiet && !settings_.warningsAsErrors) continue;
         if (!isWarning && settings_.verbosity != Verbosity::Verbose) continue;
+        const std::size_t count = std::exchange(counts[{entry.severity, entry.id, entry.message}], 0);
+        if (count == 0) continue;
         const std::string place =
             entry.offsetBytes ? fmt::format(" @0x{:x}", *entry.offsetBytes) : std::string();
         // Messages about a scene and its files name the file themselves.
-        const bool namesFile = entry.message.starts_with(file.string() + ":");
+        const bool namesFile = file.empty() || entry.message.starts_with(file.string() + ":");
         const std::string subject = namesFile ? std::string() : file.string() + place + ": ";
+        const std::string times = count > 1 ? fmt::format(" ({} times)", formatCount(count)) : std::string();
         message(isWarning ? "warning" : "note", isWarning ? "\x1b[1;33m" : "\x1b[36m",
-                fmt::format("{}{} [{}]", subject, entry.message, entry.id));
+                fmt::format("{}{}{} [{}]", subject, entry.message, times, entry.id));
     }
 }
 
@@ -99,7 +135,7 @@ void Reporter::status(std::string_view text) {
     if (settings_.verbosity == Verbosity::Quiet) return;
     const std::scoped_lock lock(mutex_);
     clearProgressLocked();
-    write(stderr, text);
+    write(stderr, escaped(text));
     write(stderr, "\n");
 }
 

@@ -19,6 +19,7 @@ std::string padded(const std::string& text, std::size_t width, Align align) {
 
 void Table::addRow(std::vector<std::string> cells) {
     cells.resize(columns_.size());
+    for (std::string& cell : cells) cell = escaped(cell);
     rows_.push_back(std::move(cells));
 }
 

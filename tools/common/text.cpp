@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <pfvox/text_encoding.hpp>
 #include <vector>
 
 namespace pfvox::tools {
@@ -76,30 +77,73 @@ std::string lowerCase(std::string_view ascii) {
     return text;
 }
 
-bool matches(std::string_view pattern, std::string_view path) {
-    while (!pattern.empty()) {
-        if (pattern.starts_with("**")) {
-            std::string_view rest = pattern.substr(2);
-            // "**/" also stands for no folder at all.
-            if (rest.starts_with('/') && matches(rest.substr(1), path)) return true;
-            for (std::size_t skip = 0; skip <= path.size(); ++skip) {
-                if (matches(rest, path.substr(skip))) return true;
+/// A pattern as an automaton: which of its steps can come next after what was read of the path. The time is
+/// that of pattern times path, whatever the stars.
+class Glob {
+  public:
+    explicit Glob(std::string_view pattern) {
+        while (!pattern.empty()) {
+            std::size_t taken = 1;
+            if (pattern.starts_with("**")) {
+                // "**/" also stands for no folder at all.
+                if (pattern.starts_with("**/")) steps_.push_back({Step::Kind::SkipFolders});
+                steps_.push_back({Step::Kind::AnyPath});
+                taken = 2;
+            } else if (pattern.front() == '*') {
+                steps_.push_back({Step::Kind::AnyName});
+            } else {
+                steps_.push_back({pattern.front() == '?' ? Step::Kind::AnyOne : Step::Kind::One, pattern.front()});
             }
-            return false;
+            pattern.remove_prefix(taken);
         }
-        if (pattern.front() == '*') {
-            for (std::size_t skip = 0; skip <= path.size(); ++skip) {
-                if (matches(pattern.substr(1), path.substr(skip))) return true;
-                if (skip < path.size() && path[skip] == '/') return false;
-            }
-            return false;
-        }
-        if (path.empty()) return false;
-        if (pattern.front() == '?' ? path.front() == '/' : pattern.front() != path.front()) return false;
-        pattern.remove_prefix(1);
-        path.remove_prefix(1);
+        reached_.resize(steps_.size() + 1, false);
+        reached_[0] = true;
+        passFreeSteps(reached_);
     }
-    return path.empty();
+
+    void read(char c) {
+        std::vector<bool> next(reached_.size(), false);
+        for (std::size_t i = 0; i < steps_.size(); ++i) {
+            if (!reached_[i]) continue;
+            const Step& step = steps_[i];
+            const bool isInName = c != '/';
+            if (step.kind == Step::Kind::AnyPath || (step.kind == Step::Kind::AnyName && isInName)) next[i] = true;
+            if (step.kind == Step::Kind::AnyOne ? isInName : step.kind == Step::Kind::One && step.character == c)
+                next[i + 1] = true;
+        }
+        passFreeSteps(next);
+        reached_ = std::move(next);
+    }
+
+    bool isMatch() const { return reached_.back(); }
+
+  private:
+    struct Step {
+        enum class Kind { One, AnyOne, AnyName, AnyPath, SkipFolders };
+        Kind kind = Kind::One;
+        char character = '\0';
+    };
+
+    /// Adds what steps that read nothing lead to.
+    void passFreeSteps(std::vector<bool>& reached) const {
+        for (std::size_t i = 0; i < steps_.size(); ++i) {
+            if (!reached[i] || steps_[i].kind == Step::Kind::One || steps_[i].kind == Step::Kind::AnyOne) continue;
+            reached[i + 1] = true;
+            if (steps_[i].kind == Step::Kind::SkipFolders) reached[i + 3] = true;  // over "**" and '/'
+        }
+    }
+
+    std::vector<Step> steps_;
+    std::vector<bool> reached_;
+};
+
+/// Whether a terminal may get this character as it is.
+bool isHarmless(char32_t c) {
+    const bool isControl = c < 0x20 || (c >= 0x7f && c < 0xa0);
+    const bool turnsDirection = c == 0x061c || c == 0x200e || c == 0x200f || (c >= 0x202a && c <= 0x202e) ||
+                                (c >= 0x2066 && c <= 0x2069);
+    const bool endsLine = c == 0x2028 || c == 0x2029;
+    return !isControl && !turnsDirection && !endsLine;
 }
 
 }  // namespace
@@ -124,7 +168,28 @@ bool globMatches(std::string_view pattern, std::string_view path) {
         const std::size_t slash = path.rfind('/');
         if (slash != std::string_view::npos) path.remove_prefix(slash + 1);
     }
-    return matches(pattern, path);
+    Glob glob(pattern);
+    for (const char c : path) glob.read(c);
+    return glob.isMatch();
+}
+
+std::string escaped(std::string_view text) {
+    std::string shown;
+    while (!text.empty()) {
+        const CodePoint next = firstCodePoint(text);
+        const std::size_t bytes = std::max<std::size_t>(next.bytes, 1);
+        if (next.bytes != 0 && isHarmless(next.value)) {
+            shown += text.substr(0, bytes);
+        } else if (text.front() == '\n') {
+            shown += "\\n";
+        } else if (next.bytes > 1) {
+            shown += fmt::format("\\u{{{:x}}}", static_cast<std::uint32_t>(next.value));
+        } else {
+            shown += fmt::format("\\x{:02x}", static_cast<unsigned char>(text.front()));
+        }
+        text.remove_prefix(bytes);
+    }
+    return shown;
 }
 
 }  // namespace pfvox::tools

@@ -28,6 +28,11 @@ std::string formatDuration(double seconds);
 /// Columns that UTF-8 text takes on a terminal, counting one for each code point.
 std::size_t displayWidth(std::string_view utf8);
 
+/// Text from outside (names, paths, messages about them) as one line that is safe to show: line ends, control
+/// characters, marks that turn the direction of writing and bytes that are not UTF-8 become \n, \x1b,
+/// \u{202e}.
+std::string escaped(std::string_view text);
+
 /// The candidate that takes the fewest insertions, deletions, replacements and swaps of neighbours to reach,
 /// if it is near enough to be what the user meant. Case does not matter; the beginning of a word counts as
 /// near.

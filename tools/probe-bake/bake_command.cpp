@@ -88,6 +88,15 @@ std::string reasonFor(const BakeOptions& options, const Existing& existing, cons
                                    : "the scene, the settings, the program or the device changed since the last bake";
 }
 
+/// Fails when the output is one that must not be replaced: better now than after the bake.
+Result<void> checkOutput(const BakeOptions& options) {
+    auto status = io::checkReplaceable(options.output, {.replaceReadOnly = options.force});
+    std::error_code error;
+    if (!status && fs::is_regular_file(options.output, error))
+        status.error().message += "; --force replaces it";
+    return status;
+}
+
 /// Adds what the user can do about it.
 Error withRemedy(Error error, const BakeOptions& options, const gpu::Device* device) {
     if (error.code == ErrorCode::GpuOutOfMemory && device != nullptr) {
@@ -183,10 +192,12 @@ class BakeRun {
         const ProbeRange range = settings->range.value_or(ProbeRange{0, static_cast<std::uint32_t>(scene.probes.probeCount())});
         outcome_.contentKey = key;
         outcome_.reason = reasonFor(options_, existing, key, range);
+        const bool isUpToDate = !options_.force && existing.key == key && existing.range == range;
+        if (!isUpToDate) PFVOX_CHECK(checkOutput(options_));
         if (options_.dryRun) {
             outcome_.planned = true;
             outcome_.report.probes = range.size();
-            outcome_.report.upToDate = !options_.force && existing.key == key && existing.range == range;
+            outcome_.report.upToDate = isUpToDate;
             return {};
         }
         ToolObserver observer(reporter_, options_.output);
@@ -242,8 +253,8 @@ ExitCode runBake(const CLI::App& command, const BakeOptions& options) {
     if (options.output.empty()) return usageError(command, "--output is required");
     if (canonicalName(options.input) == canonicalName(options.output))
         return usageError(command, options.output + " is both the input and the output");
-    // The process outlives an interrupt until the bake has come to its end: what is finished is in the journal.
-    const WriteGuard guard;
+    // What is finished is in the journal.
+    const OrderlyStop orderly;
     return BakeRun(options, *limits, reporter).run(command);
 }
 

@@ -161,7 +161,8 @@ void addBakeOptions(CLI::App& command, BakeOptions& options) {
         ->option_text("FILE")
         ->check(suggestFiles({kPfProbeExtension}))
         ->group(group::kInputOutput);
-    command.add_flag("--force", options.force, "bake what is up to date, too")->group(group::kInputOutput);
+    command.add_flag("--force", options.force, "bake what is up to date, too; replace a read-only output")
+        ->group(group::kInputOutput);
     command.add_flag("--dry-run", options.dryRun, "write nothing, say what would be baked")->group(group::kInputOutput);
     command.add_flag("--explain", options.explain, "say why it is baked or not")->group(group::kInputOutput);
     addLightOptions(command, options);

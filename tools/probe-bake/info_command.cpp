@@ -28,11 +28,7 @@ Command makeInfoCommand(CLI::App& tool) {
         DiagnosticList diagnostics;
         auto info = readProbeFileInfo(file, limits, diagnostics);
         reporter.diagnostics(file, diagnostics.entries());
-        if (!info) {
-            if (info.error().file.empty()) info.error().file = file;
-            reporter.error(info.error());
-            return info.error().code;
-        }
+        if (!info) return reportFailure(reporter, file, std::move(info).error());
         if (options->common.json) reporter.jsonLine(jsonText(infoJson(*info)));
         reporter.result((first ? "" : "\n") + infoText(*info, reporter, options->common.verbose));
         first = false;

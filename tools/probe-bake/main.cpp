@@ -3,12 +3,9 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <cstdio>
-#include <exception>
 #include <pfvox/pf_probe.hpp>
 
-#include "common/finish_output.hpp"
-#include "common/interrupt.hpp"
+#include "common/program.hpp"
 #include "probe-bake/commands.hpp"
 
 namespace pfvox::tools {
@@ -38,9 +35,6 @@ HelpText helpText() {
 }
 
 ExitCode run(int argc, char** argv) {
-    exitOnInterrupt([] {
-        std::fputs("\ninterrupted; every output is either finished or as it was\n", stderr);
-    });
     const auto tool = makeTool("probe-bake", helpText(), versionText());
     tool->require_subcommand(1);
     const std::array commands{makeBakeCommand(*tool), makeInfoCommand(*tool), makeValidateCommand(*tool), makeCompareCommand(*tool),
@@ -59,11 +53,5 @@ ExitCode run(int argc, char** argv) {
 }  // namespace pfvox::tools
 
 int main(int argc, char** argv) {
-    using pfvox::tools::ExitCode;
-    try {
-        return static_cast<int>(pfvox::tools::finishOutput(pfvox::tools::run(argc, argv)));
-    } catch (const std::exception& exception) {
-        std::fprintf(stderr, "error: internal error: %s; please report it with the command line\n", exception.what());
-        return static_cast<int>(ExitCode::Internal);
-    }
+    return pfvox::tools::runProgram([&] { return pfvox::tools::run(argc, argv); });
 }

@@ -7,7 +7,6 @@
 
 #include "common/file_visit.hpp"
 #include "common/inputs.hpp"
-#include "common/interrupt.hpp"
 #include "common/json.hpp"
 #include "common/text.hpp"
 #include "probe-bake/commands.hpp"
@@ -73,17 +72,17 @@ ExitCode runMerge(const CLI::App& command, const MergeOptions& options) {
         return exitCodeOf(error.code);
     };
     const auto wanted = [](const std::filesystem::path& file) { return file.extension() == kPfProbeExtension; };
-    const auto inputs = collectInputs(options.inputs, {.wanted = wanted, .skippedFolder = {}});
+    DiagnosticList diagnostics;
+    const auto inputs = collectInputs(options.inputs, {.wanted = wanted, .skippedFolder = {}}, diagnostics);
     if (!inputs) return stopWith(inputs.error());
     std::vector<std::filesystem::path> shards;
     for (const InputFile& input : *inputs) {
+        if (input.fault) return stopWith(*input.fault);
         if (canonicalName(input.file) == canonicalName(options.output))
             return usageError(command, options.output + " is both a shard and the output");
         shards.push_back(input.file);
     }
 
-    DiagnosticList diagnostics;
-    const WriteGuard guard;
     const auto proximity = proximityFor(options, shards, *limits, diagnostics);
     if (!proximity) return stopWith(proximity.error());
     const ProbeMergeSettings settings{

@@ -1,4 +1,5 @@
 #include <memory>
+#include <pfvox/files.hpp>
 #include <pfvox/probe_file.hpp>
 
 #include "common/file_visit.hpp"
@@ -28,6 +29,8 @@ Command makeValidateCommand(CLI::App& tool) {
         bool anyFinding = false;
         const auto visit = [&](const std::filesystem::path& file, const Limits& limits,
                                Reporter& reporter) -> std::optional<ErrorCode> {
+            if (const auto readable = io::checkReadable(file, limits.maxFileBytes); !readable)
+                return reportFailure(reporter, file, readable.error());
             const std::vector<Finding> findings = validatePfProbeFile(file, limits);
             if (options->common.json) reporter.jsonLine(jsonText(findingsJson(file, findings)));
             reporter.result(findingsText(file, findings, reporter));

@@ -7,7 +7,6 @@
 #include <algorithm>
 
 #include "common/inputs.hpp"
-#include "common/interrupt.hpp"
 #include "vox2pf/commands.hpp"
 
 namespace pfvox::tools {
@@ -129,12 +128,12 @@ Result<void> carry(const AssetTask& task, const OutputsOfRun& outputs, const Con
         result.outcome = Outcome::Kept;
         return {};
     }
+    PFVOX_CHECK(checkOutput(task, policy));
     if (policy.dryRun) {
         result.outcome = Outcome::Planned;
         return {};
     }
-    const WriteGuard guard;
-    PFVOX_CHECK(io::writeFileAtomically(task.output, bytes));
+    PFVOX_CHECK(io::writeFileAtomically(task.output, bytes, {.replaceReadOnly = policy.force}));
     result.report.outputBytes = bytes.size();
     result.outcome = Outcome::Converted;
     return {};

@@ -73,9 +73,9 @@ Result<void> convertAndWrite(const AssetTask& task, std::span<const std::byte> s
         return {};
     }
     const AddSeconds timer(result.report.writeSeconds);
-    WriteGuard guard;
-    PFVOX_TRY(io::AtomicFile, file, io::AtomicFile::createWith(task.output, *bytes));
-    asset.output.emplace(PendingOutput{std::move(guard), std::move(file)});
+    PFVOX_TRY(io::AtomicFile, file,
+              io::AtomicFile::createWith(task.output, *bytes, {.replaceReadOnly = policy.force}));
+    asset.output.emplace(std::move(file));
     result.outcome = Outcome::Converted;
     return {};
 }
@@ -97,6 +97,7 @@ Result<void> decideAndConvert(const AssetTask& task, const ConvertPolicy& policy
         result.outcome = Outcome::Kept;
         return {};
     }
+    PFVOX_CHECK(checkOutput(task, policy));
     if (policy.dryRun) {
         result.outcome = Outcome::Planned;
         return {};
@@ -128,6 +129,13 @@ std::string_view toString(Outcome outcome) {
             return "failed";
     }
     return "unknown";
+}
+
+Result<void> checkOutput(const AssetTask& task, const ConvertPolicy& policy) {
+    auto status = io::checkReplaceable(task.output, {.replaceReadOnly = policy.force});
+    std::error_code error;
+    if (!status && fs::is_regular_file(task.output, error)) status.error().message += "; --force replaces it";
+    return status;
 }
 
 bool holdsBytes(const fs::path& output, std::span<const std::byte> bytes, const Limits& limits) {
@@ -167,9 +175,9 @@ AssetResultAndOutput beginAsset(const AssetTask& task, const ConvertPolicy& poli
     return asset;
 }
 
-void finishAsset(const AssetTask& task, PendingOutput output, AssetResult& result) {
+void finishAsset(const AssetTask& task, io::AtomicFile output, AssetResult& result) {
     const AddSeconds timer(result.report.writeSeconds);
-    auto status = output.file.commit();
+    auto status = output.commit();
     if (!status) failWith(task, std::move(status).error(), result);
 }
 

@@ -13,8 +13,6 @@
 #include <string>
 #include <vector>
 
-#include "common/interrupt.hpp"
-
 namespace pfvox::tools {
 
 enum class Outcome {
@@ -51,6 +49,7 @@ struct AssetTask {
     std::filesystem::path output;
     ConvertSettings settings;
     bool isScene = false;  ///< a scene.toml: carryScene() instead of convertAsset()
+    std::optional<Error> fault = {};  ///< what is wrong with the input already
 };
 
 /// Runs `work`. Whatever it fails with or throws becomes the error of `result`.
@@ -62,18 +61,16 @@ void refreshTimeStamp(const std::filesystem::path& output, const ConvertPolicy& 
 /// Fails when the policy takes the warnings of `result` as errors.
 Result<void> checkWarnings(const AssetResult& result, const ConvertPolicy& policy);
 
+/// Fails when the output is one that must not be replaced, with the remedy.
+Result<void> checkOutput(const AssetTask& task, const ConvertPolicy& policy);
+
 /// Whether the output already holds exactly these bytes.
 bool holdsBytes(const std::filesystem::path& output, std::span<const std::byte> bytes, const Limits& limits);
 
-/// An output that is written but not yet in its place.
-struct PendingOutput {
-    WriteGuard guard;
-    io::AtomicFile file;
-};
-
 struct AssetResultAndOutput {
     AssetResult result;
-    std::optional<PendingOutput> output;  ///< for finishAsset; not set when there is nothing to put in place
+    std::optional<io::AtomicFile>
+        output;  ///< written, for finishAsset; not set when there is nothing to put in place
 };
 
 /// Everything but the wait for the disk. Never throws; whatever goes wrong is in the result. May be called from several
@@ -81,6 +78,6 @@ struct AssetResultAndOutput {
 AssetResultAndOutput beginAsset(const AssetTask& task, const ConvertPolicy& policy, const Limits& limits);
 
 /// Puts the output in its place.
-void finishAsset(const AssetTask& task, PendingOutput output, AssetResult& result);
+void finishAsset(const AssetTask& task, io::AtomicFile output, AssetResult& result);
 
 }  // namespace pfvox::tools

@@ -43,8 +43,10 @@ void addInputOutputOptions(CLI::App& command, ConvertOptions& options) {
                     "files named on the command line are mirrored from this folder, as if it were the input")
         ->option_text("FOLDER")
         ->group(group::kInputOutput);
-    auto* force = command.add_flag("--force", options.force, "convert what is up to date, too")
-                      ->group(group::kInputOutput);
+    auto* force =
+        command
+            .add_flag("--force", options.force, "convert what is up to date, too; replace read-only outputs")
+            ->group(group::kInputOutput);
     command.add_flag("--no-clobber", options.noClobber, "never replace an existing output")
         ->excludes(force)
         ->group(group::kInputOutput);
@@ -191,7 +193,8 @@ std::vector<AssetTask> makeTasks(const std::vector<InputOutput>& pairs, const Se
         tasks.push_back({.source = pair.input.file,
                          .output = pair.output,
                          .settings = settings.settingsFor(pair.input.relative, commandLine),
-                         .isScene = isScene(pair.input)});
+                         .isScene = isScene(pair.input),
+                         .fault = pair.input.fault});
     }
     return tasks;
 }
@@ -210,7 +213,9 @@ ExitCode runConvert(const CLI::App& command, const ConvertOptions& options) {
     const auto settings =
         options.settingsFile.empty() ? Result<SettingsFile>() : SettingsFile::load(options.settingsFile);
     if (!settings) return stopWith(settings.error());
-    auto inputs = collectInputs(options.inputs, inputQuery(options));
+    DiagnosticList leftOut;
+    auto inputs = collectInputs(options.inputs, inputQuery(options), leftOut);
+    reporter.diagnostics({}, leftOut.entries());
     if (!inputs) return stopWith(inputs.error());
     if (!options.baseDir.empty()) {
         if (const std::string complaint = placeBelow(options.baseDir, *inputs); !complaint.empty())

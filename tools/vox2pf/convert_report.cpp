@@ -71,8 +71,8 @@ std::string closingLine(const Totals& converted, std::size_t warnings, double se
 }  // namespace
 
 std::string assetLine(const AssetTask& task, const AssetResult& result, bool explain) {
-    std::string text =
-        fmt::format("{} {} -> {}", words(result.outcome), task.source.string(), task.output.string());
+    std::string text = fmt::format("{} {} -> {}", words(result.outcome), escaped(task.source.string()),
+                                   escaped(task.output.string()));
     if (result.outcome == Outcome::Converted) text += ": " + contentText(task, result.report);
     if (explain && !result.reason.empty()) text += fmt::format("; {}", result.reason);
     return text;

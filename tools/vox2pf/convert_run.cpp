@@ -32,12 +32,15 @@ bool ConvertRun::work(std::size_t i) {
                                .ifChanged = options_.ifChanged,
                                .refreshTimeStamp = !options_.depfile.empty() && !options_.ifChanged,
                                .warningsAsErrors = options_.warningsAsErrors};
-    if (tasks_[i].isScene) {
+    if (tasks_[i].fault) {
+        results_[i].outcome = Outcome::Failed;
+        results_[i].error = tasks_[i].fault;
+    } else if (tasks_[i].isScene) {
         results_[i] = carryScene(tasks_[i], outputs_, policy, limits_);
     } else {
         AssetResultAndOutput asset = beginAsset(tasks_[i], policy, limits_);
         results_[i] = std::move(asset.result);
-        if (asset.output) pending_[i] = std::make_unique<PendingOutput>(*std::move(asset.output));
+        if (asset.output) pending_[i] = std::make_unique<io::AtomicFile>(*std::move(asset.output));
     }
     return results_[i].outcome != Outcome::Failed;
 }

@@ -55,7 +55,7 @@ class ConvertRun {
     std::vector<AssetTask> tasks_;
     std::vector<AssetResult> results_;
     OutputsOfRun outputs_;
-    std::vector<std::unique_ptr<PendingOutput>> pending_;  ///< written, not yet in their places
+    std::vector<std::unique_ptr<io::AtomicFile>> pending_;  ///< written, not yet in their places
 };
 
 }  // namespace pfvox::tools

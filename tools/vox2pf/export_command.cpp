@@ -121,7 +121,8 @@ Command makeExportCommand(CLI::App& tool) {
                 reporter.error(withRemedy(bytes.error()));
                 return bytes.error().code;
             }
-            reporter.result(fmt::format("{} -> {}: {}\n", file.string(), output.string(), formatBytes(*bytes)));
+            reporter.result(fmt::format("{} -> {}: {}\n", escaped(file.string()), escaped(output.string()),
+                                        formatBytes(*bytes)));
             return std::nullopt;
         };
         return visitPfVoxFiles(command, *options, visit);

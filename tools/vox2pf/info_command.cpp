@@ -39,9 +39,7 @@ Command makeInfoCommand(CLI::App& tool) {
         reporter.diagnostics(file, diagnostics.entries());
         if (!info) {
             if (info.error().file.empty()) info.error().file = file;
-            const Error error = withRemedy(std::move(info).error());
-            reporter.error(error);
-            return error.code;
+            return reportFailure(reporter, file, withRemedy(std::move(info).error()));
         }
         if (options->common.json) reporter.jsonLine(jsonText(infoJson(*info)));
         reporter.result((first ? "" : "\n") + infoText(*info, reporter, options->common.verbose));

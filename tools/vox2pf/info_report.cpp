@@ -36,7 +36,7 @@ std::string headline(const FileInfo& info) {
     for (const std::string& name : info.header.featureNames()) features += ", " + name;
     return fmt::format("PF_VOX {}.{}{}, {}, from {}, {} m voxels, content key {}\n", info.header.versionMajor,
                        info.header.versionMinor, features, formatBytes(info.header.fileBytes),
-                       orDash(source.format), source.voxelSizeMetres, info.header.contentKey.hex());
+                       escaped(orDash(source.format)), source.voxelSizeMetres, info.header.contentKey.hex());
 }
 
 std::string modelTable(const FileInfo& info, std::size_t maxRows) {
@@ -155,8 +155,9 @@ std::string infoText(const FileInfo& info, const Reporter& reporter, bool comple
                reporter.styled(Reporter::Style::Strong, fmt::format("{} ({})", word, formatCount(count))) +
                "\n";
     };
-    std::string text = reporter.styled(Reporter::Style::Strong, info.file.string()) + "\n" + headline(info);
-    for (const std::string& note : info.asset.source.notes) text += "  " + note + "\n";
+    std::string text =
+        reporter.styled(Reporter::Style::Strong, escaped(info.file.string())) + "\n" + headline(info);
+    for (const std::string& note : info.asset.source.notes) text += "  " + escaped(note) + "\n";
     text += title("Models", info.models.size()) + modelTable(info, maxRows);
     if (!info.asset.instances.empty()) {
         text += title("Instances", info.asset.instances.size()) + instanceTable(info, maxRows);

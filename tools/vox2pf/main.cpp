@@ -3,13 +3,10 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <cstdio>
-#include <exception>
 #include <pfvox/import.hpp>
 #include <pfvox/pf_vox.hpp>
 
-#include "common/finish_output.hpp"
-#include "common/interrupt.hpp"
+#include "common/program.hpp"
 #include "vox2pf/commands.hpp"
 
 namespace pfvox::tools {
@@ -45,8 +42,6 @@ HelpText helpText() {
 }
 
 ExitCode run(int argc, char** argv) {
-    exitOnInterrupt(
-        [] { std::fputs("\ninterrupted; every output is either finished or as it was\n", stderr); });
     const auto tool = makeTool("vox2pf", helpText(), versionText());
     tool->require_subcommand(1);
     const std::array commands{makeConvertCommand(*tool), makeInfoCommand(*tool), makeValidateCommand(*tool),
@@ -65,12 +60,5 @@ ExitCode run(int argc, char** argv) {
 }  // namespace pfvox::tools
 
 int main(int argc, char** argv) {
-    using pfvox::tools::ExitCode;
-    try {
-        return static_cast<int>(pfvox::tools::finishOutput(pfvox::tools::run(argc, argv)));
-    } catch (const std::exception& exception) {
-        std::fprintf(stderr, "error: internal error: %s; please report it with the command line\n",
-                     exception.what());
-        return static_cast<int>(ExitCode::Internal);
-    }
+    return pfvox::tools::runProgram([&] { return pfvox::tools::run(argc, argv); });
 }

@@ -7,12 +7,14 @@
 #include <array>
 
 #include "common/text.hpp"
+#include "scene/toml_nesting.hpp"
 
 namespace pfvox::tools {
 
 namespace {
 
 constexpr std::uint64_t kMaxSettingsBytes = 1 << 20;
+constexpr std::size_t kMaxPatternBytes = 4096;
 
 template <class T>
 void assignIfSet(T& field, const auto& given) {
@@ -107,6 +109,11 @@ class SettingsReader {
             } else {
                 PFVOX_CHECK(readSection(key, node, entry.patch, {"files"}));
             }
+        }
+        if (entry.files.size() > kMaxPatternBytes) {
+            return failAtRegion(
+                ErrorCode::BadValue, table.source(),
+                fmt::format("a pattern of {} bytes is longer than any path", entry.files.size()));
         }
         if (entry.files.empty()) {
             return failAtRegion(ErrorCode::BadValue, table.source(),
@@ -221,10 +228,14 @@ class SettingsReader {
 Result<SettingsFile> SettingsFile::load(const std::filesystem::path& file) {
     PFVOX_TRY(const io::FileBytes, contents, io::readFile(file, kMaxSettingsBytes));
     const auto bytes = contents.bytes();
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     SettingsReader reader(file);
+    if (const auto place = scene::tooDeepAt(text)) {
+        return reader.failAtRegion(ErrorCode::BadStructure, {.begin = {place->line, place->column}},
+                                   fmt::format("nested deeper than {}", scene::kMaxNesting));
+    }
     try {
-        const toml::table document =
-            toml::parse(std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+        const toml::table document = toml::parse(text);
         return reader.read(document);
     } catch (const toml::parse_error& error) {
         return reader.failAtRegion(ErrorCode::BadStructure, error.source(), std::string(error.description()));

@@ -32,10 +32,7 @@ Command makeValidateCommand(CLI::App& tool) {
         const auto visit = [&](const std::filesystem::path& file, const Limits& limits,
                                Reporter& reporter) -> std::optional<ErrorCode> {
             const auto contents = io::readFile(file, limits.maxFileBytes);
-            if (!contents) {
-                reporter.error(contents.error());
-                return contents.error().code;
-            }
+            if (!contents) return reportFailure(reporter, file, contents.error());
             const std::vector<Finding> findings = validatePfVox(contents->bytes(), limits);
             if (options->common.json) reporter.jsonLine(jsonText(findingsJson(file, findings)));
             reporter.result(findingsText(file, findings, reporter));

@@ -2,7 +2,8 @@
 #include <cstdio>
 #include <pfvox/error.hpp>
 
-#include "common/finish_output.hpp"
+#include "common/program.hpp"
+#include "common/reporter.hpp"
 #include "headless.hpp"
 #include "options.hpp"
 #include "report.hpp"
@@ -15,18 +16,14 @@ namespace {
 using namespace pfvox;
 using namespace pfvox::viewer;
 
+/// Shows warnings as they come, for a window that is open for long.
 class ConsoleDiagnostics final : public Diagnostics {
   public:
-    explicit ConsoleDiagnostics(bool quiet) : quiet_(quiet) {}
-    void report(Diagnostic diagnostic) override {
-        if (quiet_) return;
-        const char* const kind = diagnostic.severity == Severity::Note ? "note" : "warning";
-        std::fprintf(stderr, "pfview: %s: %s [%s]\n", kind, diagnostic.message.c_str(),
-                     diagnostic.id.c_str());
-    }
+    explicit ConsoleDiagnostics(tools::Reporter& reporter) : reporter_(reporter) {}
+    void report(Diagnostic diagnostic) override { reporter_.diagnostics({}, {&diagnostic, 1}); }
 
   private:
-    bool quiet_;
+    tools::Reporter& reporter_;
 };
 
 Result<void> printDevices() {
@@ -45,18 +42,28 @@ Result<void> run(const Options& options, Diagnostics& diagnostics) {
 #endif
 }
 
+tools::ExitCode runWith(const Options& options) {
+    tools::Reporter reporter(
+        {.verbosity = options.quiet ? tools::Verbosity::Quiet : tools::Verbosity::Verbose});
+    DiagnosticList collected;  // equal ones become one line
+    ConsoleDiagnostics shown(reporter);
+    const bool isShort = options.listDevices || options.isHeadless();
+    const Result<void> done = run(options, isShort ? static_cast<Diagnostics&>(collected) : shown);
+    reporter.diagnostics({}, collected.entries());
+    if (done) return tools::ExitCode::Ok;
+    reporter.error(done.error());
+    return tools::exitCodeOf(done.error().code);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-    const auto parsed = parseOptions(argc, argv);
-    if (const auto* early = std::get_if<EarlyExit>(&parsed)) {
-        std::fputs(early->text.c_str(), early->exitCode == 0 ? stdout : stderr);
-        return early->exitCode;
-    }
-    const Options& options = std::get<Options>(parsed);
-    ConsoleDiagnostics diagnostics(options.quiet);
-    const Result<void> done = run(options, diagnostics);
-    if (done) return static_cast<int>(tools::finishOutput(tools::ExitCode::Ok));
-    std::fprintf(stderr, "pfview: %s\n", describe(done.error()).c_str());
-    return exitCodeOf(done.error().code);
+    return tools::runProgram([&] {
+        const auto parsed = parseOptions(argc, argv);
+        if (const auto* early = std::get_if<EarlyExit>(&parsed)) {
+            std::fputs(early->text.c_str(), early->exitCode == 0 ? stdout : stderr);
+            return static_cast<tools::ExitCode>(early->exitCode);
+        }
+        return runWith(std::get<Options>(parsed));
+    });
 }

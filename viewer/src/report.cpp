@@ -122,25 +122,6 @@ Json framesJson(const RunReport& report) {
 
 }  // namespace
 
-int exitCodeOf(ErrorCode code) {
-    switch (static_cast<int>(code) / 100) {
-        case 1:
-            return 3;
-        case 2:
-            return 4;
-        case 3:
-            return 5;
-        case 4:
-            return 4;
-        case 5:
-            return 6;
-        case 6:
-            return 130;
-        default:
-            return 70;
-    }
-}
-
 std::string deviceTable(const std::vector<gpu::DeviceInfo>& devices) {
     std::string text;
     for (const gpu::DeviceInfo& device : devices) {

@@ -1,4 +1,4 @@
-// What pfview says: messages, exit codes and statistics.
+// What pfview says: devices and statistics.
 #pragma once
 
 #include <pfvox/error.hpp>
@@ -10,9 +10,6 @@
 #include "picture.hpp"
 
 namespace pfvox::viewer {
-
-/// Exit code of the tools for an error (docs/cli.md).
-int exitCodeOf(ErrorCode code);
 
 std::string deviceTable(const std::vector<gpu::DeviceInfo>& devices);
 

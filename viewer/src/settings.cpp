@@ -8,6 +8,8 @@
 #include <sstream>
 #include <toml++/toml.h>
 
+#include "scene/toml_nesting.hpp"
+
 namespace pfvox::viewer {
 
 namespace fs = std::filesystem;
@@ -19,6 +21,9 @@ constexpr const char* kSettingsFile = "pfvox/pfview.toml";
 constexpr const char* kCamerasFile = "pfvox/pfview-cameras.toml";
 
 Result<toml::table> parsed(std::string_view text) {
+    if (const auto place = scene::tooDeepAt(text))
+        return fail(ErrorCode::BadStructure,
+                    fmt::format("line {}: nested deeper than {}", place->line, scene::kMaxNesting));
     try {
         return toml::parse(text);
     } catch (const toml::parse_error& error) {

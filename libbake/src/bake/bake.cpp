@@ -63,7 +63,8 @@ class Baker {
                                        .depth = info_.depth},
                                       settings_));
         const ProbeWriteSettings write{.encode = {.zstdLevel = settings_.zstdLevel, .contentKey = key},
-                                       .resume = settings_.resume};
+                                       .resume = settings_.resume,
+                                       .replaceReadOnly = settings_.force};
         PFVOX_TRY(ProbeFileWriter, writer, ProbeFileWriter::open(output, info_, write, diagnostics_));
         PFVOX_CHECK(bakeAll(tracer, writer));
         PFVOX_TRY(const std::uint64_t, capped, tracer.cappedRays());

@@ -76,12 +76,14 @@ Result<ProbeField> loadPfProbe(const std::filesystem::path& file, const Limits& 
                                Diagnostics& diagnostics);
 std::vector<Finding> validatePfProbeFile(const std::filesystem::path& file, const Limits& limits);  ///< all of them
 
-/// "out.pf_probe" -> "out.pf_probe.journal".
+/// "out.pf_probe" -> "out.pf_probe.journal". Where that is longer than file names may be: the beginning of
+/// the name and a hash of it.
 std::filesystem::path probeJournalPath(const std::filesystem::path& output);
 /// How a file is begun.
 struct ProbeWriteSettings {
     ProbeEncodeSettings encode;  ///< key and compression
     bool resume = false;         ///< take what a journal beside the output holds; else begin a new one
+    bool replaceReadOnly = false;  ///< replace an output that is read-only, too
 };
 
 /// Writes a file probe by probe.
@@ -90,7 +92,7 @@ class ProbeFileWriter {
     /// Begins or resumes. A journal of another grid, range, resolution or depth encoding is not used, and one
     /// that is damaged only up to the damage; both are reported ("probe-journal-other",
     /// "probe-journal-damaged"). Errors: those of checkProbeInfo; FileNotWritable (also while another process
-    /// writes the same journal).
+    /// writes the same journal, and for an output that could not be replaced in the end).
     static Result<ProbeFileWriter> open(const std::filesystem::path& output, const ProbeFieldInfo& info,
                                         const ProbeWriteSettings& settings, Diagnostics& diagnostics);
     ProbeFileWriter(ProbeFileWriter&&) noexcept;

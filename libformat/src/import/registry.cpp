@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "import/asset_check.hpp"
 #include "import/importer.hpp"
 #include "import/merge.hpp"
 #include "io/byte_cursor.hpp"
@@ -32,6 +33,10 @@ std::string lowerCaseExtension(const std::filesystem::path& file) {
     return extension;
 }
 
+bool isAppleDouble(std::string_view text) {
+    return text.starts_with(std::string_view("\0\x05\x16\x07", 4));
+}
+
 /// What a file is that no importer takes, in words for the user.
 std::string nameForeignContent(std::span<const std::byte> bytes) {
     const std::string_view text = io::asText(bytes.first(std::min<std::size_t>(bytes.size(), 64)));
@@ -39,6 +44,8 @@ std::string nameForeignContent(std::span<const std::byte> bytes) {
     if (text.starts_with("version https://git-lfs")) {
         return "this is a Git LFS pointer, not the file itself: run `git lfs pull`";
     }
+    if (isAppleDouble(text))
+        return "this is what macOS keeps beside a file, not the file itself: convert the one without \"._\"";
     if (text.starts_with("SQLite format 3"))
         return "this is an SQLite database (Cubiquity keeps its voxels so)";
     if (text.starts_with("PFVOX")) return "this is a PF_VOX file, already converted";
@@ -54,6 +61,7 @@ Result<VoxelAsset> importMerged(const import::Importer& importer, const import::
                                 const ImportSettings& settings, const Limits& limits, Diagnostics& diagnostics) {
     PFVOX_TRY(VoxelAsset, asset, importer.import(source, settings, limits, diagnostics));
     if (settings.merge) PFVOX_CHECK(import::mergeAsset(asset, limits, diagnostics));
+    import::checkAsset(asset, diagnostics);
     return asset;
 }
 
@@ -70,6 +78,8 @@ std::span<const SourceFormat> sourceFormats() {
 
 bool looksLikeSource(const std::filesystem::path& file) {
     const std::string extension = lowerCaseExtension(file);
+    // What macOS keeps beside a file on foreign file systems has its name behind these two characters.
+    if (file.filename().native().starts_with("._")) return false;
     // Ours and the thesis's files share this name: folder mode must not take its own output for input. Legacy
     // files are converted when they are named one by one.
     if (extension == ".pf_vox") return false;

@@ -52,23 +52,28 @@ Result<RandomFile> RandomFile::openForWriting(const std::filesystem::path& file)
     return RandomFile(file, std::move(fd), static_cast<std::uint64_t>(info.st_size));
 }
 
-Result<void> RandomFile::readAt(std::uint64_t offsetBytes, std::span<std::byte> bytes) const {
-    while (!bytes.empty()) {
-        const ssize_t n = ::pread(fd_.get(), bytes.data(), bytes.size(), static_cast<off_t>(offsetBytes));
+Result<std::size_t> RandomFile::readFrom(std::uint64_t offsetBytes, std::span<std::byte> bytes) const {
+    std::size_t done = 0;
+    while (done < bytes.size()) {
+        const ssize_t n = ::pread(fd_.get(), bytes.data() + done, bytes.size() - done,
+                                  static_cast<off_t>(offsetBytes + done));
         if (n < 0) {
             if (errno == EINTR) continue;
             return systemError(ErrorCode::FileNotReadable, path_, "cannot read");
         }
-        if (n == 0) {
-            return tl::make_unexpected(Error{.code = ErrorCode::Truncated,
-                                             .message = "the file has become shorter",
-                                             .file = path_,
-                                             .offsetBytes = offsetBytes});
-        }
-        bytes = bytes.subspan(static_cast<std::size_t>(n));
-        offsetBytes += static_cast<std::uint64_t>(n);
+        if (n == 0) break;
+        done += static_cast<std::size_t>(n);
     }
-    return {};
+    return done;
+}
+
+Result<void> RandomFile::readAt(std::uint64_t offsetBytes, std::span<std::byte> bytes) const {
+    PFVOX_TRY(const std::size_t, present, readFrom(offsetBytes, bytes));
+    if (present == bytes.size()) return {};
+    return tl::make_unexpected(Error{.code = ErrorCode::Truncated,
+                                     .message = "the file has become shorter",
+                                     .file = path_,
+                                     .offsetBytes = offsetBytes + present});
 }
 
 Result<void> RandomFile::writeAt(std::uint64_t offsetBytes, std::span<const std::byte> bytes) {

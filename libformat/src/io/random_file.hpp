@@ -24,6 +24,8 @@ class RandomFile {
     std::uint64_t sizeBytes() const { return sizeBytes_; }
     const std::filesystem::path& path() const { return path_; }
 
+    /// Reads what the file has from there on; returns how many bytes that are. Errors: FileNotReadable.
+    Result<std::size_t> readFrom(std::uint64_t offsetBytes, std::span<std::byte> bytes) const;
     /// Errors: FileNotReadable; Truncated when the file ends before.
     Result<void> readAt(std::uint64_t offsetBytes, std::span<std::byte> bytes) const;
     /// Errors: FileNotWritable.

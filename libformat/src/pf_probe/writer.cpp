@@ -5,6 +5,7 @@
 #include <pfvox/files.hpp>
 #include <pfvox/probe_file.hpp>
 
+#include "io/hash.hpp"
 #include "pf_probe/frame_codec.hpp"
 #include "pf_probe/journal.hpp"
 #include "pf_probe/probe_list.hpp"
@@ -16,6 +17,7 @@ struct ProbeFileWriter::State {
     ProbeFieldInfo info;
     ProbeEncodeSettings encode;
     probe::Journal journal;
+    io::WriteOptions write;
     probe::Journal::Entries found{};    ///< what a resumed journal had
     probe::Journal::Entries written{};  ///< what counts
     mutable std::mutex mutex{};         ///< of the end of the journal and of `written`
@@ -24,9 +26,18 @@ struct ProbeFileWriter::State {
 };
 
 std::filesystem::path probeJournalPath(const std::filesystem::path& output) {
-    std::filesystem::path journal = output;
-    journal += ".journal";
-    return journal;
+    constexpr std::string_view kSuffix = ".journal";
+    constexpr std::size_t kMaxNameBytes = 255;  // of most file systems
+    constexpr std::size_t kKeptBytes = 200;
+    std::string name = output.filename().string();
+    if (name.size() + kSuffix.size() > kMaxNameBytes) {
+        const std::uint64_t hash = io::xxh3_64(std::as_bytes(std::span(name)));
+        std::size_t kept = kKeptBytes;
+        while (kept > 0 && (static_cast<unsigned char>(name[kept]) & 0xc0u) == 0x80u)
+            --kept;  // between two characters
+        name = fmt::format("{}-{:016x}", name.substr(0, kept), hash);
+    }
+    return output.parent_path() / name.append(kSuffix);
 }
 
 ProbeFileWriter::ProbeFileWriter(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -37,6 +48,8 @@ ProbeFileWriter::~ProbeFileWriter() = default;
 Result<ProbeFileWriter> ProbeFileWriter::open(const std::filesystem::path& output, const ProbeFieldInfo& info,
                                               const ProbeWriteSettings& settings, Diagnostics& diagnostics) {
     PFVOX_CHECK(checkProbeInfo(info));
+    const io::WriteOptions write{.replaceReadOnly = settings.replaceReadOnly};
+    PFVOX_CHECK(io::checkReplaceable(output, write));
     probe::Journal::Entries found;
     PFVOX_TRY(auto, journal,
               probe::Journal::open(probeJournalPath(output), info, settings.resume, found, diagnostics));
@@ -44,6 +57,7 @@ Result<ProbeFileWriter> ProbeFileWriter::open(const std::filesystem::path& outpu
                                                   .info = info,
                                                   .encode = settings.encode,
                                                   .journal = std::move(journal),
+                                                  .write = write,
                                                   .found = std::move(found)});
     state->written.resize(info.range.size());
     return ProbeFileWriter(std::move(state));
@@ -109,7 +123,7 @@ Result<void> ProbeFileWriter::finish(const std::optional<ProximityGrid>& proximi
                          .proximity = proximity ? &*proximity : nullptr};
     for (const auto& entry : state_->written) plan.probes.push_back(entry->probe);
     PFVOX_TRY(const auto, head, probe::composeHead(plan));
-    PFVOX_TRY(io::AtomicFile, file, io::AtomicFile::create(state_->output));
+    PFVOX_TRY(io::AtomicFile, file, io::AtomicFile::create(state_->output, state_->write));
     PFVOX_CHECK(file.write(head));
     for (const auto& entry : state_->written) {
         PFVOX_TRY(const auto, stored, state_->journal.readStored(*entry));

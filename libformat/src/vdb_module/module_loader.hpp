@@ -11,7 +11,8 @@
 namespace pfvox {
 
 /// The module, opened by the first call and never closed. May be called from several threads.
-/// Errors: UnsupportedFeature when it is missing, cannot be opened or is of another build; the message has the remedy.
+/// Errors: UnsupportedFeature when it is missing, cannot be opened or is of another build; the message has
+/// the remedy; LimitExceeded when the memory does not suffice.
 Result<const VdbModule*> vdbModule();
 
 /// The same in given folders, in their order; the first that has the file decides.

@@ -118,5 +118,18 @@ TEST(Memory, MissingOrBrokenFilesAreDefaults) {
     EXPECT_TRUE(saveMemory({}, {}));
 }
 
+TEST(Memory, FilesThatNestWithoutEndAreDefaults) {
+    const TempFolder folder;
+    const UserFolders folders{.config = folder / "config", .state = folder / "state"};
+    std::string deep = "a";
+    for (int i = 0; i < 200'000; ++i) deep += ".a";
+    std::filesystem::create_directories(folder / "config" / "pfvox");
+    writeText(folder / "config" / "pfvox" / "pfview.toml", deep + "=1");
+    DiagnosticList diagnostics;
+    EXPECT_EQ(loadMemory(folders, diagnostics).settings, Settings{});
+    ASSERT_EQ(diagnostics.entries().size(), 1u);
+    EXPECT_THAT(diagnostics.entries()[0].message, HasSubstr("nested deeper"));
+}
+
 }  // namespace
 }  // namespace pfvox::test

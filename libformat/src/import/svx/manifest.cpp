@@ -9,6 +9,8 @@
 #include <pugixml.hpp>
 #include <utility>
 
+#include "import/svx/manifest_repair.hpp"
+
 namespace pfvox::import::svx {
 
 namespace {
@@ -169,17 +171,8 @@ void readMaterials(pugi::xml_node grid, Manifest& manifest) {
     }
 }
 
-}  // namespace
-
-Result<Manifest> parseManifest(std::string_view xml, const Limits& limits, Diagnostics& diagnostics) {
-    // pugixml neither fetches nor expands entities of a DOCTYPE, so none can grow here.
-    pugi::xml_document document;
-    const pugi::xml_parse_result parsed = document.load_buffer(xml.data(), xml.size());
-    if (!parsed) {
-        return tl::make_unexpected(Error{.code = ErrorCode::BadStructure,
-                                         .message = parsed.description(),
-                                         .context = place(xml, parsed.offset)});
-    }
+Result<Manifest> readManifest(std::string_view xml, const pugi::xml_document& document, const Limits& limits,
+                              Diagnostics& diagnostics) {
     const pugi::xml_node element = document.child("grid");
     if (!element) {
         return tl::make_unexpected(Error{.code = ErrorCode::BadStructure,
@@ -194,6 +187,24 @@ Result<Manifest> parseManifest(std::string_view xml, const Limits& limits, Diagn
     PFVOX_CHECK(readChannels(xml, element, manifest));
     readMaterials(element, manifest);
     return manifest;
+}
+
+}  // namespace
+
+Result<Manifest> parseManifest(std::string_view xml, const Limits& limits, Diagnostics& diagnostics) {
+    // pugixml neither fetches nor expands entities of a DOCTYPE, so none can grow here.
+    pugi::xml_document document;
+    const pugi::xml_parse_result parsed = document.load_buffer(xml.data(), xml.size());
+    if (parsed) return readManifest(xml, document, limits, diagnostics);
+    const Error error{.code = ErrorCode::BadStructure,
+                      .message = parsed.description(),
+                      .context = place(xml, parsed.offset)};
+    const std::string repaired = repairedManifest(xml);
+    if (!document.load_buffer(repaired.data(), repaired.size())) return tl::make_unexpected(error);
+    diagnostics.warn("svx-manifest-repaired",
+                     fmt::format("{}: {}; read after straightening quotes and closing elements",
+                                 error.context, error.message));
+    return readManifest(repaired, document, limits, diagnostics);
 }
 
 }  // namespace pfvox::import::svx

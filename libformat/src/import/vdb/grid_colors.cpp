@@ -29,15 +29,29 @@ glm::u8vec3 colorOf(const Vec3& value) {
             srgbByteOf(static_cast<float>(value[2]))};
 }
 
+template <class Vec3>
+bool isClamped(const Vec3& value) {
+    const auto isInside = [](double c) { return c >= 0.0 && c <= 1.0; };
+    return !(isInside(static_cast<double>(value[0])) && isInside(static_cast<double>(value[1])) &&
+             isInside(static_cast<double>(value[2])));
+}
+
+/// What a tree holds, tiles and inactive values included; only active ones count as clamped.
 template <class TreeT>
-ColorPalette collect(const TreeT& tree) {
+ColorPalette collect(const TreeT& tree, std::uint64_t& clamped) {
     ColorPalette palette(kMaxGridColors);
     palette.add(colorOf(tree.background()));
     auto tiles = tree.cbeginValueAll();
     tiles.setMaxDepth(tiles.getLeafDepth() - 1);
-    for (; tiles; ++tiles) palette.add(colorOf(*tiles));
+    for (; tiles; ++tiles) {
+        palette.add(colorOf(*tiles));
+        if (tiles.isValueOn() && isClamped(*tiles)) ++clamped;
+    }
     for (auto leaf = tree.cbeginLeaf(); leaf; ++leaf) {
-        for (std::uint32_t i = 0; i < kBrickVoxels; ++i) palette.add(colorOf(leaf->getValue(i)));
+        for (std::uint32_t i = 0; i < kBrickVoxels; ++i) {
+            palette.add(colorOf(leaf->getValue(i)));
+            if (leaf->isValueOn(i) && isClamped(leaf->getValue(i))) ++clamped;
+        }
     }
     palette.finish();
     return palette;
@@ -86,8 +100,8 @@ class GridShader final : public Shader {
 template <class GridT>
 GridColors makeColors(const openvdb::GridBase::ConstPtr& base, MaterialIndex firstMaterial) {
     auto grid = openvdb::gridConstPtrCast<GridT>(base);
-    ColorPalette palette = collect(grid->tree());
     GridColors colors;
+    ColorPalette palette = collect(grid->tree(), colors.clampedValues);
     colors.distinctColors = palette.distinctColors();
     for (const glm::u8vec3 color : palette.colors()) {
         Material material;

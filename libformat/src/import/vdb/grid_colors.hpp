@@ -21,6 +21,7 @@ std::uint8_t srgbByteOf(float linear);
 struct GridColors {
     std::vector<Material> materials;       ///< the first has index `firstMaterial`
     std::size_t distinctColors = 0;        ///< before joining
+    std::uint64_t clampedValues = 0;       ///< voxels and tiles with a component outside of 0 to 1
     std::unique_ptr<const Shader> shader;  ///< shares the tree of the grid
 };
 

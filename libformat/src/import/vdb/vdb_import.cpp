@@ -122,6 +122,12 @@ class VdbImport {
                 fmt::format("{} colours of grid \"{}\" were joined to {}", colors_.distinctColors,
                             reader_.grids()[indices[0]].displayName, colors_.materials.size()));
         }
+        if (colors_.clampedValues > 0) {
+            diagnostics_.warn(
+                "vdb-colors-clamped",
+                fmt::format("{} values of grid \"{}\" have components outside of 0 to 1, which are clamped",
+                            colors_.clampedValues, reader_.grids()[indices[0]].displayName));
+        }
         asset_.materials.insert(asset_.materials.end(), colors_.materials.begin(), colors_.materials.end());
         return {};
     }

@@ -2,12 +2,20 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <array>
+#include <cctype>
 
 namespace pfvox::import::vox {
 
 namespace {
 
 constexpr std::string_view kMagic = "VOX ";
+constexpr const char* kContainerSize = "vox-container-size";
+
+/// Chunks that the format gives no children, whatever a file says.
+constexpr std::array<std::string_view, 21> kChildless{"PACK", "SIZE", "XYZI", "TDCZ", "RGBA", "IMAP", "MATL",
+                                                      "MATT", "nTRN", "nGRP", "nSHP", "LAYR", "rCAM", "NOTE",
+                                                      "META", "rOBJ", "rLIT", "rAIR", "rLEN", "POST", "rDIS"};
 
 struct ChunkHeader {
     std::string_view id;
@@ -20,7 +28,7 @@ std::string contextOf(std::string_view id) {
     return "chunk " + printableId(id);
 }
 
-/// Reads a chunk header and proves that content and children lie within what is left of `cursor`.
+/// Reads a chunk header and proves that its content lies within what is left of `cursor`.
 Result<ChunkHeader> readHeader(io::ByteCursor& cursor) {
     const std::uint64_t offset = cursor.offset();
     const auto id = cursor.take(4);
@@ -40,14 +48,35 @@ Result<ChunkHeader> readHeader(io::ByteCursor& cursor) {
                              .offsetBytes = offset,
                              .contentBytes = static_cast<std::uint64_t>(*contentBytes),
                              .childrenBytes = static_cast<std::uint64_t>(*childrenBytes)};
-    if (header.contentBytes + header.childrenBytes > cursor.remaining()) {
+    if (header.contentBytes > cursor.remaining()) {
         return failAt(
             ErrorCode::Truncated, offset, contextOf(idText),
             fmt::format("announces {} bytes, but only {} are left; the file is incomplete or damaged: get "
                         "it or export it again",
-                        header.contentBytes + header.childrenBytes, cursor.remaining()));
+                        header.contentBytes, cursor.remaining()));
     }
     return header;
+}
+
+/// Whether a whole chunk with a plausible id begins here.
+bool beginsChunk(io::ByteCursor cursor) {
+    const auto id = cursor.take(4);
+    const bool isId =
+        id && std::ranges::all_of(io::asText(*id), [](unsigned char c) { return std::isalnum(c) != 0; });
+    const auto contentBytes = cursor.read<std::int32_t>();
+    const auto childrenBytes = cursor.read<std::int32_t>();
+    return isId && contentBytes && childrenBytes && *contentBytes >= 0 && *childrenBytes >= 0 &&
+           static_cast<std::uint64_t>(*contentBytes) <= cursor.remaining();
+}
+
+/// Whether children of this size can be stepped over: behind them the next chunk begins, or nothing.
+bool endsWell(io::ByteCursor cursor, std::uint64_t childrenBytes) {
+    return cursor.take(childrenBytes) && (cursor.remaining() == 0 || beginsChunk(cursor));
+}
+
+void warnAt(Diagnostics& diagnostics, const char* id, std::uint64_t offset, std::string message) {
+    diagnostics.report(
+        {.severity = Severity::Warning, .id = id, .message = std::move(message), .offsetBytes = offset});
 }
 
 }  // namespace
@@ -140,24 +169,48 @@ Result<ChunkWalker> ChunkWalker::open(std::span<const std::byte> bytes, Diagnost
         return failAt(ErrorCode::BadStructure, main.offsetBytes, contextOf(main.id),
                       "MAIN must be the first chunk; the file is damaged");
     }
-    cursor.take(main.contentBytes);
-    const auto children = cursor.sub(main.childrenBytes);
-    if (cursor.remaining() != 0) {
-        diagnostics.report(
-            {.severity = Severity::Warning,
-             .id = "vox-trailing-bytes",
-             .message = fmt::format("{} bytes follow the end of MAIN and are ignored", cursor.remaining()),
-             .offsetBytes = cursor.offset()});
+    // Some writers count the children as content.
+    const bool areContent = main.childrenBytes == 0 && beginsChunk(cursor);
+    if (!areContent) cursor.take(main.contentBytes);
+    const std::uint64_t announced = areContent ? main.contentBytes : main.childrenBytes;
+    if (areContent || announced > cursor.remaining()) {
+        warnAt(diagnostics, kContainerSize, main.offsetBytes,
+               fmt::format("chunk MAIN announces {} bytes of content and {} of children, but {} follow; its "
+                           "chunks are read as "
+                           "far as they go, and may be incomplete",
+                           main.contentBytes, main.childrenBytes, cursor.remaining()));
     }
-    return ChunkWalker(*children);
+    return ChunkWalker(cursor, cursor.offset() + announced, diagnostics);
 }
 
 Result<std::optional<Chunk>> ChunkWalker::next() {
-    if (children_.remaining() == 0) return std::optional<Chunk>{};
-    PFVOX_TRY(const ChunkHeader, header, readHeader(children_));
-    const auto content = children_.sub(header.contentBytes);
-    children_.take(header.childrenBytes);
+    if (chunks_.remaining() == 0) return std::optional<Chunk>{};
+    if (chunks_.offset() >= announcedEnd_ && !beginsChunk(chunks_)) {
+        warnAt(*diagnostics_, "vox-trailing-bytes", chunks_.offset(),
+               fmt::format("{} bytes follow the end of MAIN and are ignored", chunks_.remaining()));
+        return std::optional<Chunk>{};
+    }
+    PFVOX_TRY(const ChunkHeader, header, readHeader(chunks_));
+    const auto content = chunks_.sub(header.contentBytes);
+    if (chunks_.offset() > announcedEnd_ && !isPastEnd_) {
+        isPastEnd_ = true;
+        warnAt(*diagnostics_, kContainerSize, header.offsetBytes,
+               "chunks go on behind the end that MAIN announces; they are read, too");
+    }
+    if (header.childrenBytes != 0) stepOverChildren(header.id, header.offsetBytes, header.childrenBytes);
     return std::optional<Chunk>{Chunk(header.id, header.offsetBytes, *content)};
+}
+
+void ChunkWalker::stepOverChildren(std::string_view id, std::uint64_t offsetBytes, std::uint64_t bytes) {
+    const bool isChildless = std::ranges::find(kChildless, id) != kChildless.end();
+    if (endsWell(chunks_, bytes) && !(isChildless && beginsChunk(chunks_))) {
+        chunks_.take(bytes);
+        return;
+    }
+    warnAt(*diagnostics_, kContainerSize, offsetBytes,
+           fmt::format(
+               "chunk {} announces {} bytes of children, which are none; reading goes on behind its content",
+               printableId(id), bytes));
 }
 
 }  // namespace pfvox::import::vox

@@ -1,7 +1,7 @@
 // Chunks: the container of a MagicaVoxel file. 'VOX ', i32 version, then MAIN, whose children are all other
 // chunks. A chunk is id[4], i32 content size N, i32 size of its children M, N bytes, M bytes, little endian.
 //
-// Sizes are checked against the bytes that enclose them before anything is read, so that no truncated file
+// Sizes are checked against the bytes that enclose them before anything is read, so that no truncated chunk
 // passes.
 #pragma once
 
@@ -50,20 +50,29 @@ class Chunk {
 /// The id with anything but printable ASCII shown as '?', for messages.
 std::string printableId(std::string_view id);
 
-/// Walks over the children of MAIN in file order.
+/// Walks over the children of MAIN in file order. Chunks are believed more than the sizes of what holds them:
+/// writers get those wrong, so chunks that are whole are read on.
 class ChunkWalker {
   public:
-    /// Checks the header and the size of MAIN. Errors: BadMagic, Truncated, BadStructure.
-    /// Diagnostics: vox-version, vox-trailing-bytes.
+    /// Checks the header and finds the first chunk. Errors: BadMagic, Truncated, BadStructure.
+    /// Diagnostics: vox-version, vox-container-size.
     static Result<ChunkWalker> open(std::span<const std::byte> bytes, Diagnostics& diagnostics);
 
     /// The next chunk, or nothing at the end. Children of children are stepped over. Errors: BadValue for
-    /// negative sizes, Truncated for a chunk that goes beyond the end of MAIN.
+    /// negative sizes, Truncated for a chunk whose content goes beyond the end of the file. Diagnostics:
+    /// vox-container-size, vox-trailing-bytes.
     Result<std::optional<Chunk>> next();
 
   private:
-    explicit ChunkWalker(io::ByteCursor children) : children_(children) {}
-    io::ByteCursor children_;
+    ChunkWalker(io::ByteCursor chunks, std::uint64_t announcedEnd, Diagnostics& diagnostics)
+        : chunks_(chunks), announcedEnd_(announcedEnd), diagnostics_(&diagnostics) {}
+
+    void stepOverChildren(std::string_view id, std::uint64_t offsetBytes, std::uint64_t bytes);
+
+    io::ByteCursor chunks_;
+    std::uint64_t announcedEnd_;  ///< of MAIN, as an offset in the file
+    Diagnostics* diagnostics_;
+    bool isPastEnd_ = false;
 };
 
 }  // namespace pfvox::import::vox

@@ -8,13 +8,17 @@ namespace pfvox::import::vox {
 
 namespace {
 
-GridInstance atOrigin(std::uint32_t model) {
-    return {.model = model, .worldFromModel = {}, .name = {}, .layerId = -1};
+/// Its pivot in the origin, as a transform without translation places it.
+GridInstance atOrigin(const VoxFile& file, std::uint32_t model) {
+    return {.model = model,
+            .worldFromModel = worldFromModel({}, file.models[model].size),
+            .name = {},
+            .layerId = -1};
 }
 
 Result<std::vector<GridInstance>> frameOfFile(const VoxFile& file, int frame, Diagnostics& diagnostics) {
     const auto frames = static_cast<std::uint32_t>(file.models.size());
-    if (frames == 1) return std::vector{atOrigin(0)};
+    if (frames == 1) return std::vector{atOrigin(file, 0)};
     if (static_cast<std::uint32_t>(frame) >= frames) {
         return fail(ErrorCode::BadReference,
                     fmt::format("frame {} does not exist: the file has {} frames, 0 to {}", frame, frames,
@@ -24,7 +28,7 @@ Result<std::vector<GridInstance>> frameOfFile(const VoxFile& file, int frame, Di
                      fmt::format("the file has no scene graph, so its {} models are the frames of one "
                                  "object; frame {} is imported",
                                  frames, frame));
-    return std::vector{atOrigin(static_cast<std::uint32_t>(frame))};
+    return std::vector{atOrigin(file, static_cast<std::uint32_t>(frame))};
 }
 
 std::vector<GridInstance> everyModelOnce(const VoxFile& file, Diagnostics& diagnostics) {
@@ -33,7 +37,8 @@ std::vector<GridInstance> everyModelOnce(const VoxFile& file, Diagnostics& diagn
         fmt::format("the scene graph shows no model; each of the {} is placed once, at the origin",
                     file.models.size()));
     std::vector<GridInstance> instances;
-    for (std::uint32_t model = 0; model < file.models.size(); ++model) instances.push_back(atOrigin(model));
+    for (std::uint32_t model = 0; model < file.models.size(); ++model)
+        instances.push_back(atOrigin(file, model));
     return instances;
 }
 

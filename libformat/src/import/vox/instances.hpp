@@ -29,8 +29,7 @@ GridTransform worldFromModel(const GridTransform& voxWorldFromPivot, glm::ivec3 
 ///   - A file with a scene graph: the placements that are visible, or all of them with
 ///   settings.includeHidden.
 ///   - A file without one: its models are the frames of one object; settings.frame selects, and the model's
-///   minimum
-///     corner comes to lie in the origin.
+///     pivot comes to lie in the origin.
 ///   - A graph without shapes (old files whose root is its own child): every model once, as above.
 /// Errors: those of expandGraph; NothingToConvert without models or with all instances hidden; BadReference
 /// for a frame that does not exist. Diagnostics: vox-frames, vox-graph-without-shapes, vox-hidden-dropped.

@@ -39,7 +39,7 @@ struct VoxFile {
 /// Reads all chunks. Views in the result point into `bytes`.
 /// Errors: Truncated, BadMagic, BadValue, BadStructure, UnsupportedFeature (Teardown's TDCZ), LimitExceeded
 /// (maxModels). Diagnostics: vox-version, vox-trailing-bytes, vox-imap-invalid, vox-duplicate-chunk,
-/// vox-unknown-chunks, vox-pack-count, vox-size-too-large.
+/// vox-unknown-chunks, vox-pack-count, vox-size-too-large, vox-container-size.
 Result<VoxFile> readVoxFile(std::span<const std::byte> bytes, double voxelSizeMetres, const Limits& limits,
                             Diagnostics& diagnostics);
 

@@ -61,11 +61,13 @@ void reportMaterials(const VoxFile& file, const std::array<bool, kPaletteSize>& 
     std::set<std::string> unmapped;
     std::set<std::string> malformed;
     int approximated = 0;
+    int translucent = 0;
     for (std::size_t v = 1; v < kPaletteSize; ++v) {
         if (!usedIndices[v]) continue;
         const MaterialRecord& record = file.materials[v];
         unmapped.insert(record.unmappedKeys.begin(), record.unmappedKeys.end());
         malformed.insert(record.malformedKeys.begin(), record.malformedKeys.end());
+        if (file.palette[v].a != 255) ++translucent;
         const MaterialType type = record.material.type;
         if (type == MaterialType::Blend || type == MaterialType::Media) ++approximated;
     }
@@ -79,6 +81,12 @@ void reportMaterials(const VoxFile& file, const std::array<bool, kPaletteSize>& 
             fmt::format("material properties that are no number or out of range, replaced by the default "
                         "or the nearest bound: {}",
                         fmt::join(malformed, ", ")));
+    }
+    if (translucent > 0) {
+        diagnostics.warn("vox-palette-alpha", fmt::format("{} of the colors used have an alpha below 255, "
+                                                          "which MagicaVoxel draws opaque; their voxels do "
+                                                          "not count as opaque",
+                                                          translucent));
     }
     if (approximated > 0) {
         diagnostics.note("vox-material-approximated",
