@@ -55,7 +55,8 @@ std::string verifyRow(const Json& line) {
     const std::string doubt = reference.at("isCertain").get<bool>() ? "" : " ?";
     return rowOf(
         {fmt::format("{}, {}", line.at("scene").get<std::string>(), score.at("camera").get<std::string>()),
-         line.at("profile").get<std::string>(), countText(line.at("samples").get<std::uint64_t>()),
+         line.at("profile").get<std::string>(),
+         countText(static_cast<std::uint64_t>(std::lround(line.at("bake").at("meanSamples").get<double>()))),
          fmt::format("{:.1f}", 1e-3 * line.at("bake").at("totalMs").get<double>()),
          fmt::format("{:.1f}", 1e-6 * line.at("fileBytes").get<double>()),
          texels(score.at("tierShares").at("texels").get<double>()),
@@ -74,7 +75,11 @@ std::string verifyTable(const ResultLines& lines) {
                                 "by texels", "RMSE / mean", "trimmed", "paths of the reference", "its noise",
                                 "without it", "of texels", "PSNR, dB", "FLIP", "noise's"},
                                2);
-    for (const char* const profile : {"default", "thesis", "compact"})
+    std::vector<std::string> profiles;  // in the order of their first line
+    for (const Json& line : lines)
+        if (std::ranges::find(profiles, line.at("profile").get<std::string>()) == profiles.end())
+            profiles.push_back(line.at("profile"));
+    for (const std::string& profile : profiles)
         for (const Json& line : lines)
             if (line.at("profile") == profile) table += verifyRow(line);
     return table;
