@@ -95,7 +95,7 @@ TEST_F(TwoDevices, AgreeWithinRounding) {
         PFVOX_ASSERT_VALUE(const ProbeData, b, there.readProbe(probe));
         ASSERT_EQ(a.record.offset, b.record.offset);
         all.add(a, b);
-        noise += static_cast<double>(b.record.error) / static_cast<double>(here.info().range.end);
+        noise += static_cast<double>(b.record.error.value()) / static_cast<double>(here.info().range.end);
     }
     // The record's error is that of tiles of 64 texels; that of the mean of all is so much smaller.
     const double tiles = static_cast<double>(all.sameSurface) / 64.0;

@@ -49,9 +49,10 @@ void drawField(Session& session) {
     if (ImGui::Button("Drop")) return session.dropProbes();
     ImGui::SameLine();
     text(probes->file.filename().string());
-    std::array<std::size_t, 3> states{};
-    for (const ShownProbe& probe : probes->probes) ++states[static_cast<std::size_t>(probe.record.state)];
-    text(fmt::format("{} active, {} relocated, {} inactive", states[0], states[2], states[1]));
+    std::vector<ProbeRecord> records;
+    for (const ShownProbe& probe : probes->probes) records.push_back(probe.record);
+    const ProbeCounts counts = countProbes(records);
+    text(fmt::format("{} active, {} of them relocated; {} inactive", counts.active, counts.relocated, counts.inactive));
     const ProbeResolution& maps = probes->info.resolution;
     note(fmt::format("maps {} depth, {} light, {} irradiance, {}", maps.depth, maps.light, maps.irradiance,
                      bytesText(probes->field.statistics().totalBytes())));
@@ -133,7 +134,8 @@ void Panels::drawProbeDetail(Session& session) {
     }
     if (!detail_) return;
     const ProbeDetail& d = *detail_;
-    text(fmt::format("{}, error {:.3f}", toString(d.record.state), d.record.error));
+    text(fmt::format("{}, error {}", toString(d.record.state),
+                     d.record.error ? fmt::format("{:.3f}", *d.record.error) : "unknown"));
     text(fmt::format("indirect mean {:.3f} {:.3f} {:.3f}", d.meanLight.r, d.meanLight.g, d.meanLight.b));
     text(fmt::format("indirect max {:.3f} {:.3f} {:.3f}", d.maxLight.r, d.maxLight.g, d.maxLight.b));
     if (d.minDepthMetres) text(fmt::format("nearest surface {:.3f} m", *d.minDepthMetres));
