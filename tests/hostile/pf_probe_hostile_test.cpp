@@ -104,7 +104,7 @@ TEST(PfProbeHostile, OtherVersionsAndFeaturesAreNamed) {
     Bytes file = sampleFile();
     file[offsetof(layout::Header, versionMajor)] = std::byte{9};
     test::repairHead(file);
-    expectRefused(file, ErrorCode::UnsupportedVersion, "PF_PROBE 9.0");
+    expectRefused(file, ErrorCode::UnsupportedVersion, "PF_PROBE 9.1");
 
     file = sampleFile();
     file[offsetof(layout::Header, requiredFeatures)] = std::byte{0x10};

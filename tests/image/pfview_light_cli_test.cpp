@@ -124,7 +124,7 @@ TEST_F(PfviewLight, ProbesThatCannotBeReadAreErrors) {
     write("older.pf_probe", older);
     const Outcome version = run(picture + "older.pf_probe");
     EXPECT_EQ(version.exitCode, 5) << version.err;
-    EXPECT_THAT(version.err, HasSubstr("bake again: probe-bake 'hall.toml' -o 'older.pf_probe'\n")) << "where it was asked for";
+    EXPECT_THAT(version.err, HasSubstr("bake again: probe-bake 'hall.toml' -o 'older.pf_probe'")) << "where it was asked for";
     EXPECT_FALSE(fs::exists(folder_ / "a.png"));
 }
 

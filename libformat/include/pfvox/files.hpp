@@ -35,7 +35,7 @@ Result<FileBytes> readFile(const std::filesystem::path& file, std::uint64_t maxB
 
 /// Whether a regular file of this size can be opened. Errors: as readFile.
 Result<void> checkReadable(const std::filesystem::path& file, std::uint64_t maxBytes);
-
+/// How an output takes the place of what is there.
 struct WriteOptions {
     /// Replace an output that is read-only, too. Otherwise it is refused: somebody protects it.
     bool replaceReadOnly = false;

@@ -57,8 +57,8 @@ void forEachProbeSetting(const Visit& visit, Settings&... of) {
 
 /// A setting of two fields that is not the same, in words: "--bounces 2" and "--bounces 4", or "--bounces unknown".
 struct ProbeSettingDifference {
-    std::string first;
-    std::string second;
+    std::string first;   ///< of the first field
+    std::string second;  ///< of the second
 };
 /// In the order of forEachProbeSetting(); empty = the same settings. Unknown and known are not the same.
 std::vector<ProbeSettingDifference> differencesOf(const ProbeBakeSettings& first, const ProbeBakeSettings& second);

@@ -9,7 +9,7 @@ namespace pfvox {
 
 /// A code point at the front of a text.
 struct CodePoint {
-    char32_t value = 0;
+    char32_t value = 0;     ///< Unicode scalar value
     std::size_t bytes = 0;  ///< that it takes; 0 where the text is empty or does not begin with valid UTF-8
 };
 CodePoint firstCodePoint(std::string_view text);  ///< overlong forms and surrogates are not valid
