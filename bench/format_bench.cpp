@@ -107,7 +107,9 @@ void decodeProfile(benchmark::State& state, const std::string& name, Profile pro
     setBytesPerVoxel(state, "disk_B/voxel", bytes.size(), source);
 }
 
-void decode(benchmark::State& state, const std::string& name) { decodeProfile(state, name, Profile::Packed); }
+void decode(benchmark::State& state, const std::string& name) {
+    decodeProfile(state, name, Profile::Packed);
+}
 void decodeResident(benchmark::State& state, const std::string& name) {
     decodeProfile(state, name, Profile::Resident);
 }

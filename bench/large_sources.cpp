@@ -133,7 +133,9 @@ void writeValley(const std::filesystem::path& file) {
     constexpr float kStep = 9.0f;
     const HeightMap heights(kTerrainEdge, kTerrainAmplitude);
     const auto groundAt = [&](float x, float z) {
-        const auto cell = [](float metres) { return std::clamp(static_cast<int>(metres / kMetres), 0, kTerrainEdge - 1); };
+        const auto cell = [](float metres) {
+            return std::clamp(static_cast<int>(metres / kMetres), 0, kTerrainEdge - 1);
+        };
         return kMetres * static_cast<float>(heights.at(cell(x), cell(-z)) + 6);
     };
     const float middle = 0.5f * kMetres * kTerrainEdge;
@@ -147,16 +149,17 @@ void writeValley(const std::filesystem::path& file) {
         << -middle + 42.0f << "]\ntarget = [" << middle << ", " << ground + 2.0f << ", " << -middle
         << "]\nfovYDegrees = 55.0\n\n"
         << "[[cameras]]\nname = \"among\"\nposition = [" << middle - 12.0f << ", "
-        << groundAt(middle - 12.0f, -middle + 13.0f) + 4.0f << ", " << -middle + 13.0f << "]\ntarget = [" << middle << ", "
-        << ground + 2.5f << ", " << -middle - 4.0f << "]\nfovYDegrees = 65.0\n\n"
+        << groundAt(middle - 12.0f, -middle + 13.0f) + 4.0f << ", " << -middle + 13.0f << "]\ntarget = ["
+        << middle << ", " << ground + 2.5f << ", " << -middle - 4.0f << "]\nfovYDegrees = 65.0\n\n"
         << "[[models]]\nname = \"terrain\"\npath = \"terrain_shell.vox\"\n";
     const char* const names[] = {"courtyard", "tree", "statue", "tree", "lamp", "tree", "tree"};
     for (int i = 0; i < kModels; ++i) {
         const float x = middle + kStep * static_cast<float>(i % kRow - kRow / 2);
         const float z = -middle + kStep * static_cast<float>(i / kRow - 2);
         const char* const name = names[(i + i / kRow) % 7];
-        out << "\n[[models]]\nname = \"" << name << ' ' << i << "\"\npath = \"" << name << ".vox\"\ntranslateVec = [" << x
-            << ", " << groundAt(x, z) << ", " << z << "]\nrotateVec = [0.0, " << 0.37f * static_cast<float>(i) << ", 0.0]\n";
+        out << "\n[[models]]\nname = \"" << name << ' ' << i << "\"\npath = \"" << name
+            << ".vox\"\ntranslateVec = [" << x << ", " << groundAt(x, z) << ", " << z
+            << "]\nrotateVec = [0.0, " << 0.37f * static_cast<float>(i) << ", 0.0]\n";
     }
 }
 

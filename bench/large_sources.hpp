@@ -7,8 +7,8 @@ namespace pfvox::bench {
 
 /// 25 million voxels: 2048^2 columns, 6 thick, in 8 x 8 models.
 void writeTerrainShell(const std::filesystem::path& file);
-/// A scene of that terrain with 35 of the demo's models on it, for baker and viewer: terrain_shell.vox and the sources of
-/// data/ are to lie beside it.
+/// A scene of that terrain with 35 of the demo's models on it, for baker and viewer: terrain_shell.vox and
+/// the sources of data/ are to lie beside it.
 void writeValley(const std::filesystem::path& file);
 /// 115 million voxels, 461 MB: 1024^2 columns filled to the ground.
 void writeSolidTerrain(const std::filesystem::path& file);

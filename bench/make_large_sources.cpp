@@ -1,5 +1,5 @@
-// Writes the sources that bench/run-import converts: make_large_sources <folder> [name of one of them]. About 700 MB in
-// all; what is there already is left alone.
+// Writes the sources that bench/run-import converts: make_large_sources <folder> [name of one of them]. About
+// 700 MB in all; what is there already is left alone.
 #include <cstdio>
 #include <exception>
 #include <functional>

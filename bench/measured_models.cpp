@@ -35,7 +35,7 @@ PackedVoxel packed(int x, int y, int z, std::uint32_t material) {
             static_cast<MaterialIndex>(material)};
 }
 
-/// Distance of the voxel's centre from the cube's centre.
+/// Distance of the voxel's center from the cube's center.
 double distance(int edge, int x, int y, int z) {
     const double c = edge / 2 - 0.5;
     return std::sqrt((x - c) * (x - c) + (y - c) * (y - c) + (z - c) * (z - c));
@@ -47,7 +47,7 @@ MeasuredModel makeBall(const std::string& name, int edge, double radius) {
         for (int y = 0; y < edge; ++y) {
             const double d = distance(edge, x, y, z);
             if (d > radius) continue;
-            // Surface: some face neighbour is empty.
+            // Surface: some face neighbor is empty.
             const bool surface = distance(edge, x + (x < edge / 2 ? -1 : 1), y, z) > radius ||
                                  distance(edge, x, y + (y < edge / 2 ? -1 : 1), z) > radius ||
                                  distance(edge, x, y, z + (z < edge / 2 ? -1 : 1)) > radius;

@@ -20,8 +20,8 @@ struct MeasuredModel {
     std::vector<PackedVoxel> voxels;
 };
 
-/// "landscape" is the terrain over 6144^2 columns, 113 million voxels: larger than caches. "tiny" is a ball of 33,000
-/// voxels, for a test that the programs run.
+/// "landscape" is the terrain over 6144^2 columns, 113 million voxels: larger than caches. "tiny" is a ball
+/// of 33,000 voxels, for a test that the programs run.
 inline constexpr std::array kMeasuredModelNames{"sphere", "shell", "terrain", "landscape", "tiny"};
 
 /// Name is one of kMeasuredModelNames. The voxels come in an order that no octree uses: column by column.

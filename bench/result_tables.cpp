@@ -59,7 +59,7 @@ std::string verifyRow(const Json& line) {
          countText(static_cast<std::uint64_t>(std::lround(line.at("bake").at("meanSamples").get<double>()))),
          fmt::format("{:.1f}", 1e-3 * line.at("bake").at("totalMs").get<double>()),
          fmt::format("{:.1f}", 1e-6 * line.at("fileBytes").get<double>()),
-         texels(score.at("tierShares").at("texels").get<double>()),
+         texels(score.at("tierFractions").at("texels").get<double>()),
          percent(all.at("relativeRmse").get<double>()), percent(all.at("relativeTrimmedRmse").get<double>()),
          countText(reference.at("samples").get<std::uint64_t>()),
          percent(all.at("relativeNoise").get<double>()),

@@ -1,5 +1,5 @@
-// Ray casting speed: primary, shadow and diffuse rays over models and scenes, timed on the device, as JSON lines.
-// Run: bench_trace sphere shell terrain landscape city.pf_vox [--device nvidia] [--size 3840x2160]
+// Ray casting speed: primary, shadow and diffuse rays over models and scenes, timed on the device, as JSON
+// lines. Run: bench_trace sphere shell terrain landscape city.pf_vox [--device nvidia] [--size 3840x2160]
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <fstream>
@@ -25,11 +25,10 @@ Json jsonOf(const TraceScene& scene, const gpu::SceneStatistics& s, const gpu::D
     std::uint64_t octreeBytes = 0;
     for (const OctreeModel& model : scene.asset.models)
         octreeBytes += statistics(model, scene.asset.materials.size()).gpuBytes;
-    return {{"scene", scene.name},         {"device", device.name},
-            {"driver", device.driver},     {"voxels", s.voxels},
-            {"instances", s.instances},    {"nodeBytes", s.nodeBytes},
-            {"valueBytes", s.valueBytes},  {"bytes", s.totalBytes()},
-            {"octreeBytes", octreeBytes},  {"buildMs", s.buildMs}};
+    return {{"scene", scene.name},        {"device", device.name},    {"driver", device.driver},
+            {"voxels", s.voxels},         {"instances", s.instances}, {"nodeBytes", s.nodeBytes},
+            {"valueBytes", s.valueBytes}, {"bytes", s.totalBytes()},  {"octreeBytes", octreeBytes},
+            {"buildMs", s.buildMs}};
 }
 
 Json jsonOf(const std::string& scene, const TraceRow& row) {
@@ -40,9 +39,9 @@ Json jsonOf(const std::string& scene, const TraceRow& row) {
             {"casts", row.casts},
             {"ms", row.ms},
             {"Mrays/s", row.megaraysPerSecond()},
-            {"hitShare", row.hitShare},
+            {"hitFraction", row.hitFraction},
             {"stepsPerRay", row.stepsPerRay},
-            {"capped", row.capped},
+            {"stepLimitReached", row.stepLimitReached},
             {"differing", row.differing}};
 }
 
@@ -80,7 +79,8 @@ int main(int argc, char** argv) {
     app.add_option("--refill", options.settings.refill, "idle lanes that are worth a refill");
     app.add_option("--batch", options.settings.batch, "steps between looks for idle lanes");
     std::string spirv;
-    app.add_option("--spirv", spirv, "another build of bench_trace.comp, to compare")->check(CLI::ExistingFile);
+    app.add_option("--spirv", spirv, "another build of bench_trace.comp, to compare")
+        ->check(CLI::ExistingFile);
     app.add_flag("--validate", options.validate, "with the validation layer");
     CLI11_PARSE(app, argc, argv);
     if (std::sscanf(options.size.c_str(), "%ux%u", &options.settings.width, &options.settings.height) != 2 ||

@@ -34,8 +34,8 @@ Result<const gpu::Program*> TraceRunner::program(const Variant& v) {
     if (!programs_[index]) {
         const std::array constants{v.kind, v.path, v.persistent ? 1u : 0u, v.count ? 1u : 0u};
         PFVOX_TRY(gpu::Program, made,
-                  device_->createProgram(settings_.spirv.empty() ? shaders::kBenchTrace : settings_.spirv, sizeof(shared::BenchParameters), "bench",
-                                         constants));
+                  device_->createProgram(settings_.spirv.empty() ? shaders::kBenchTrace : settings_.spirv,
+                                         sizeof(shared::BenchParameters), "bench", constants));
         programs_[index] = std::move(made);
     }
     return &*programs_[index];
@@ -131,9 +131,9 @@ Result<TraceRow> TraceRunner::measure(Variant variant, shared::BenchParameters p
     if (variant.persistent) row.way += "-persistent";
     row.casts = counters.rays;
     row.ms = ms;
-    row.hitShare = counters.hits / std::max(1.0, static_cast<double>(counters.rays));
+    row.hitFraction = counters.hits / std::max(1.0, static_cast<double>(counters.rays));
     row.stepsPerRay = counters.steps / std::max(1.0, static_cast<double>(counters.rays));
-    row.capped = counters.capped;
+    row.stepLimitReached = counters.stepLimitReached;
     return row;
 }
 

@@ -1,4 +1,5 @@
-// Runs shaders/bench_trace.comp: one launch for each kind of ray, way of tracing and camera, timed by the device.
+// Runs shaders/bench_trace.comp: one launch for each kind of ray, way of tracing and camera, timed by the
+// device.
 #pragma once
 
 #include <array>
@@ -16,14 +17,15 @@ namespace pfvox::bench {
 struct TraceSettings {
     std::uint32_t width = 3840;   ///< a multiple of 16
     std::uint32_t height = 2160;  ///< a multiple of 8
-    double warmUpMs = 150.0;  ///< of launches before the timed ones: clocks fall while the device waits
-    int repetitions = 15;     ///< timed submissions; their median counts
+    double warmUpMs = 150.0;      ///< of launches before the timed ones: clocks fall while the device waits
+    int repetitions = 15;         ///< timed submissions; their median counts
     std::size_t launchesPerSubmission = 4;
     std::uint32_t persistentGroups = 132 * 16;
     std::uint32_t refill = 10;
     std::uint32_t batch = 4;
     std::vector<std::uint32_t> bounces{1, 3};
-    std::vector<std::uint32_t> spirv;  ///< another build of bench_trace.comp, to compare; empty = the built-in one
+    std::vector<std::uint32_t>
+        spirv;  ///< another build of bench_trace.comp, to compare; empty = the built-in one
 };
 
 /// One line of the table.
@@ -33,9 +35,9 @@ struct TraceRow {
     std::string way;   ///< "geometry", "scene", each also "-persistent"
     std::uint64_t casts = 0;
     double ms = 0.0;  ///< median
-    double hitShare = 0.0;
+    double hitFraction = 0.0;
     double stepsPerRay = 0.0;
-    std::uint64_t capped = 0;
+    std::uint64_t stepLimitReached = 0;
     std::uint64_t differing = 0;  ///< persistent: results that are not those of one ray an invocation
     double megaraysPerSecond() const { return ms > 0.0 ? static_cast<double>(casts) / ms * 1e-3 : 0.0; }
 };

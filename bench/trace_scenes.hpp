@@ -19,12 +19,14 @@ struct TraceScene {
     std::string name;
     OctreeAsset asset;
     std::vector<TraceCamera> cameras;
-    bool singleModel = false;  ///< one instance in voxel units: can be traced without BVH and materials as well
+    bool singleModel =
+        false;  ///< one instance in voxel units: can be traced without BVH and materials as well
 };
 
-/// `what`: a measured model ("sphere", "shell", "terrain", "tiny"), "landscape" (the terrain over 6144^2 columns: 113 million
-/// voxels) or a PF_VOX file. The measured models have the cameras of the ray casting anchors; the others are seen from near,
-/// from far and from just above the ground. Errors: those of loadPfVox and buildOctree.
+/// `what`: a measured model ("sphere", "shell", "terrain", "tiny"), "landscape" (the terrain over 6144^2
+/// columns: 113 million voxels) or a PF_VOX file. The measured models have the cameras of the ray casting
+/// anchors; the others are seen from near, from far and from just above the ground. Errors: those of
+/// loadPfVox and buildOctree.
 Result<TraceScene> makeTraceScene(const std::string& what);
 
 }  // namespace pfvox::bench

@@ -18,11 +18,11 @@ struct PathStart {
     vec3 normal;
 };
 PathStart startOfSample(BakeWave wave, uint probe, uvec2 texel, uint mask, uint sampleIndex) {
-    uint block = wave.depthEdge / wave.lightEdge;
+    uint block = wave.depthResolution / wave.lightResolution;
     uint bit = bitOfRank(mask, sampleIndex % uint(bitCount(mask)));
     uvec2 at = texel * block + uvec2(bit & 3u, bit >> 2);
     SeenTexel seen = SeenTexels(wave.texels).at[seenIndex(wave, probe, at)];
-    vec3 position = Probes(wave.probes).at[probe].position + seen.metres * directionOfTexel(at.x, at.y, wave.depthEdge);
+    vec3 position = Probes(wave.probes).at[probe].position + seen.metres * directionOfTexel(at.x, at.y, wave.depthResolution);
     return PathStart(position + seen.lift, unpackWideNormal(seen.normal));
 }
 
@@ -46,7 +46,7 @@ void main() {
     if (alive) {
         uint sampleIndex = item.y * kBatchSamples + path / kTileTexels % kBatchSamples;
         uint key = texelKey(bake.seedLow, bake.seedHigh, Probes(wave.probes).at[probe].index,
-                            texel.x + wave.lightEdge * texel.y);
+                            texel.x + wave.lightResolution * texel.y);
         PathStart start = startOfSample(wave, probe, texel, mask, sampleIndex);
         if (looksForEmitters(bake)) {
             Lobes white = Lobes(vec3(1.0), vec3(0.0), 0.0, 1.0, 0.0);

@@ -1,4 +1,4 @@
-// The rays of one queue: closest hits of paths, or shadow rays and the share of their light that arrives.
+// The rays of one queue: closest hits of paths, or shadow rays and the fraction of their light that arrives.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_buffer_reference : require
@@ -25,10 +25,10 @@ void castPath(BakeWave wave, Scene scene, uint place, inout RayCounts counts) {
 }
 
 void castShadow(BakeWave wave, Scene scene, uint place, inout RayCounts counts) {
-    vec3 share = transmittance(scene, rayAt(wave, place), counts);
-    if (maxOf(share) <= 0.0) return;
+    vec3 fraction = transmittance(scene, rayAt(wave, place), counts);
+    if (maxOf(fraction) <= 0.0) return;
     ShadowRays rays = ShadowRays(wave.shadowRays[kQueue - kQueueSun]);
-    Vectors(wave.arrived).at[rays.at[place].path].rgb += share * rays.at[place].light;
+    Vectors(wave.arrived).at[rays.at[place].path].rgb += fraction * rays.at[place].light;
 }
 
 void main() {

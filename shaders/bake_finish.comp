@@ -15,14 +15,14 @@ void storeFloats(BakeWave wave, uint at, vec3 values) {
 
 void main() {
     BakeWave wave = Waves(push.wave).at[0];
-    uint lightTexels = wave.lightEdge * wave.lightEdge;
-    uint depthTexels = wave.depthEdge * wave.depthEdge;
+    uint lightTexels = wave.lightResolution * wave.lightResolution;
+    uint depthTexels = wave.depthResolution * wave.depthResolution;
     uint index = push.first + invocationIndex();
     if (invocationIndex() >= push.count) return;
     uint probe = index / lightTexels;
     uint within = index % lightTexels;
-    uvec2 texel = uvec2(within % wave.lightEdge, within / wave.lightEdge);
-    uint tile = probe * tilesOf(wave) + texel.y / kTileEdge * (wave.lightEdge / kTileEdge) + texel.x / kTileEdge;
+    uvec2 texel = uvec2(within % wave.lightResolution, within / wave.lightResolution);
+    uint tile = probe * tilesOf(wave) + texel.y / kTileEdge * (wave.lightResolution / kTileEdge) + texel.x / kTileEdge;
     float batches = float(Tiles(wave.tiles).at[tile].batches);
     vec4 sum = Vectors(wave.sums).at[index];
     bool lit = batches > 0.0 && surfacesUnder(wave, probe, texel) != 0u;
@@ -31,13 +31,13 @@ void main() {
 
     uint base = probe * (2u * depthTexels + 7u * lightTexels);
     Numbers maps = Numbers(wave.maps);
-    uint block = wave.depthEdge / wave.lightEdge;
+    uint block = wave.depthResolution / wave.lightResolution;
     vec3 leaving = vec3(0.0);
     for (uint j = 0u; j < block; ++j) {
         for (uint i = 0u; i < block; ++i) {
             uvec2 at = texel * block + uvec2(i, j);
             SeenTexel seen = SeenTexels(wave.texels).at[seenIndex(wave, probe, at)];
-            uint to = base + at.x + wave.depthEdge * at.y;
+            uint to = base + at.x + wave.depthResolution * at.y;
             maps.at[to] = seen.word;
             maps.at[to + depthTexels] = floatBitsToUint(seen.metres);
             leaving += seen.direct + seen.albedo * light;

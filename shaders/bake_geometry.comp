@@ -13,7 +13,7 @@ SeenTexel seen(BakeWave wave, BakeScene bake, vec3 probe, vec3 direction, inout 
     if (hit.instance == kNoInstance)
         return SeenTexel(vec3(0.0), -1.0, skyRadiance(bake, direction), kDepthMiss, vec3(0.0), 0u);
     // A texel stands for all that it covers: where that is more than the foot of a lamp, light right there says little of it.
-    Surface surface = surfaceOf(scene, ray, hit, 0.5 * texelAngle(wave.depthEdge) * hit.t);
+    Surface surface = surfaceOf(scene, ray, hit, 0.5 * texelAngle(wave.depthResolution) * hit.t);
     MaterialRecord material = materialOf(scene, surface);
     SeenTexel texel;
     texel.lift = surface.lift;
@@ -33,9 +33,9 @@ void main() {
     if (invocationIndex() >= push.count) return;
     BakeWave wave = Waves(push.wave).at[0];
     uint index = push.first + invocationIndex();
-    uint texels = wave.depthEdge * wave.depthEdge;
+    uint texels = wave.depthResolution * wave.depthResolution;
     uint texel = index % texels;
-    vec3 direction = directionOfTexel(texel % wave.depthEdge, texel / wave.depthEdge, wave.depthEdge);
+    vec3 direction = directionOfTexel(texel % wave.depthResolution, texel / wave.depthResolution, wave.depthResolution);
     RayCounts counts = RayCounts(0u, TraceStatistics(0u, 0u));
     vec3 probe = Probes(wave.probes).at[index / texels].position;
     SeenTexels(wave.texels).at[index] = seen(wave, BakeScenes(wave.scene).at[0], probe, direction, counts);

@@ -34,8 +34,8 @@ ShadowRay towardsEmitter(BakeScene bake, Lobes lobes, vec3 origin, vec3 normal, 
     vec3 way = found.end - origin;
     ray.metres = length(way);
     ray.direction = way / ray.metres;
-    float weight = bake.sampling == kSampleCombined ? emitterWeight(found.density, s.density) : 1.0;
-    ray.light = found.radiance * s.value * (weight / found.density);
+    float weight = bake.sampling == kSampleCombined ? emitterWeight(found.pdf, s.pdf) : 1.0;
+    ray.light = found.radiance * s.value * (weight / found.pdf);
     return ray;
 }
 

@@ -20,7 +20,7 @@ struct RayCounts {
 };
 
 vec3 skyRadiance(BakeScene bake, vec3 direction) {
-    return skyAlong(SkyColours(bake.skyZenith, bake.skyHorizon, bake.skyGround), direction);
+    return skyAlong(SkyColors(bake.skyZenith, bake.skyHorizon, bake.skyGround), direction);
 }
 
 Hit castRay(Scene scene, Ray ray, inout RayCounts counts) {
@@ -53,7 +53,7 @@ Ray behindGlass(Scene scene, Ray ray, Hit hit, Surface surface) {
 // One body of glass is one sheet: only what a ray enters from outside counts.
 bool entersGlass(Surface surface, uint lastGlass) { return surface.face != kFaceInside || surface.material != lastGlass; }
 
-// Share of the light that comes through one model, by colour.
+// Fraction of the light that comes through one model, by color.
 vec3 transmittanceOfModel(Scene scene, uint instance, Ray ray, inout Walk walk, inout RayCounts counts) {
     vec3 through = vec3(1.0);
     uint lastGlass = kNoMaterial;  // of the cell before, when there is nothing in between
@@ -77,11 +77,11 @@ vec3 transmittanceOfModel(Scene scene, uint instance, Ray ray, inout Walk walk, 
         }
         if (state == kWalkLeft) return through;
     }
-    counts.trace.capped = 1u;
+    counts.trace.stepLimitReached = 1u;
     return vec3(0.0);
 }
 
-// Share of the light that comes through along a ray of unit direction, by colour.
+// Fraction of the light that comes through along a ray of unit direction, by color.
 vec3 transmittance(Scene sceneBuffer, Ray ray, inout RayCounts counts) {
     ++counts.rays;
     if (kHasGlass == 0u) return traceAny(sceneBuffer, ray, counts.trace) ? vec3(0.0) : vec3(1.0);

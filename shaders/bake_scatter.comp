@@ -22,13 +22,13 @@ Ray rayOf(PathState path) { return Ray(path.origin, kInfinity, path.direction, 0
 uint bouncesOf(PathState path) { return path.steps & (kGlassStep - 1u); }
 
 vec3 emissionSeen(BakeScene bake, PathState path, vec3 emission, float cosine) {
-    if (path.density < 0.0 || !looksForEmitters(bake)) return path.throughput * emission;
+    if (path.pdf < 0.0 || !looksForEmitters(bake)) return path.throughput * emission;
     if (bake.sampling == kSampleEmitters) return vec3(0.0);
-    float other = densityOfEmitter(bake, emission, path.travelled, cosine);
-    return path.throughput * emission * emitterWeight(path.density, other);
+    float other = emitterPdf(bake, emission, path.travelled, cosine);
+    return path.throughput * emission * emitterWeight(path.pdf, other);
 }
 
-// True when the ray is reflected by glass or goes on through it; false when it meets the glass's Lambert share.
+// True when the ray is reflected by glass or goes on through it; false when it meets the glass's Lambert fraction.
 bool passGlass(Scene scene, inout PathState path, Hit hit, Surface surface, MaterialRecord material, vec2 u) {
     bool enters = entersGlass(surface, path.lastGlass);
     path.lastGlass = surface.material;
@@ -37,13 +37,13 @@ bool passGlass(Scene scene, inout PathState path, Hit hit, Surface surface, Mate
         if (u.x < reflectance) {
             path.origin = startOf(surface);
             path.direction = reflect(path.direction, surface.normal);
-            path.density = -1.0;
+            path.pdf = -1.0;
             path.lastGlass = kNoMaterial;
             return true;
         }
         float through = material.transparency;
         if (u.y >= through) {
-            path.throughput /= max(1.0 - through, 1e-6);  // lobesOf has the share again
+            path.throughput /= max(1.0 - through, 1e-6);  // lobesOf has the fraction again
             return false;
         }
         path.throughput *= material.albedo;
@@ -98,7 +98,7 @@ bool extendPath(BakeScene bake, inout PathState path, Hit hit, inout Vertex foun
     vec3 direction = sampleLobes(lobes, surface.normal, toViewer, u, emitterAndLobe.y);
     Scattering s = evaluateLobes(lobes, surface.normal, toViewer, direction);
     if (maxOf(s.value) <= 0.0) return false;
-    vec3 weight = s.value / s.density;
+    vec3 weight = s.value / s.pdf;
     if (bounces + 1u >= kRouletteBounce) {
         float survival = min(maxOf(weight), kMaxSurvival);
         if (randomPair(path.key, vertex, kPairRoulette, path.sampleIndex).x >= survival) return false;
@@ -107,7 +107,7 @@ bool extendPath(BakeScene bake, inout PathState path, Hit hit, inout Vertex foun
     path.throughput *= weight;
     path.origin = origin;
     path.direction = direction;
-    path.density = s.density;
+    path.pdf = s.pdf;
     path.travelled = 0.0;
     path.lastGlass = kNoMaterial;
     return true;

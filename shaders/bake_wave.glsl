@@ -29,12 +29,12 @@ uint invocationIndex() { return groupIndex() * kBakeGroupSize + gl_LocalInvocati
 
 // --- Tiles ---
 
-uint tilesOf(BakeWave wave) { return wave.lightEdge * wave.lightEdge / kTileTexels; }
+uint tilesOf(BakeWave wave) { return wave.lightResolution * wave.lightResolution / kTileTexels; }
 
 // Texel of the light map that is number `lane` of a tile of the group.
 uvec2 texelOfTile(BakeWave wave, uint tile, uint lane) {
     uint within = tile % tilesOf(wave);
-    uint tilesPerRow = wave.lightEdge / kTileEdge;
+    uint tilesPerRow = wave.lightResolution / kTileEdge;
     return uvec2(within % tilesPerRow, within / tilesPerRow) * kTileEdge + uvec2(lane % kTileEdge, lane / kTileEdge);
 }
 
@@ -42,17 +42,17 @@ uint probeOfTile(BakeWave wave, uint tile) { return tile / tilesOf(wave); }
 
 // In the sums.
 uint sumIndex(BakeWave wave, uint probe, uvec2 texel) {
-    return (probe * wave.lightEdge + texel.y) * wave.lightEdge + texel.x;
+    return (probe * wave.lightResolution + texel.y) * wave.lightResolution + texel.x;
 }
 
 // In the texels that the probes see.
 uint seenIndex(BakeWave wave, uint probe, uvec2 texel) {
-    return (probe * wave.depthEdge + texel.y) * wave.depthEdge + texel.x;
+    return (probe * wave.depthResolution + texel.y) * wave.depthResolution + texel.x;
 }
 
 // The texels of the depth map under one of the light map that see a surface: bit i + 4j.
 uint surfacesUnder(BakeWave wave, uint probe, uvec2 texel) {
-    uint block = wave.depthEdge / wave.lightEdge;
+    uint block = wave.depthResolution / wave.lightResolution;
     uint mask = 0u;
     for (uint j = 0u; j < block; ++j) {
         for (uint i = 0u; i < block; ++i) {
@@ -64,7 +64,7 @@ uint surfacesUnder(BakeWave wave, uint probe, uvec2 texel) {
 }
 
 void countCapped(BakeWave wave, TraceStatistics statistics) {
-    if (statistics.capped != 0u) atomicAdd(Controls(wave.control).control.cappedRays, 1u);
+    if (statistics.stepLimitReached != 0u) atomicAdd(Controls(wave.control).control.stepLimitRays, 1u);
 }
 
 #endif

@@ -115,13 +115,13 @@ void storeHit(uint index, Ray ray, Hit hit) {
     WordPairs(bench.results).at[index] = packVoxel(uvec3(found.voxel), found.face);
 }
 
-void count(TraceStatistics statistics, bool struck) {
+void count(TraceStatistics statistics, bool isHit) {
     if (kCount == 0u) return;
     Counters counters = Counters(bench.counters);
     atomicAdd(counters.counters.steps, statistics.steps);
     atomicAdd(counters.counters.rays, 1u);
-    atomicAdd(counters.counters.hits, uint(struck));
-    atomicAdd(counters.counters.capped, statistics.capped);
+    atomicAdd(counters.counters.hits, uint(isHit));
+    atomicAdd(counters.counters.stepLimitReached, statistics.stepLimitReached);
 }
 
 // --- One ray an invocation ---
@@ -146,15 +146,15 @@ void castOne(uint index) {
     for (uint bounce = 1u;; ++bounce) {
         TraceStatistics statistics = TraceStatistics(0u, 0u);
         Hit hit = castRay(ray, statistics);
-        bool struck = hit.instance != kNoInstance;
-        count(statistics, struck);
-        if (kKind == kBenchDiffuse && kPath == kBenchScene && struck && bounce < bench.bounces) {
+        bool isHit = hit.instance != kNoInstance;
+        count(statistics, isHit);
+        if (kKind == kBenchDiffuse && kPath == kBenchScene && isHit && bounce < bench.bounces) {
             Surface surface = surfaceOf(Scene(bench.scene), ray, hit);
             vec3 direction = aboutNormal(cosineDirection(hash(index) + bounce), surface.normal);
             ray = Ray(originAt(surface), kInfinity, direction, 0.0);
             continue;
         }
-        if (struck) storeHit(index, ray, hit);
+        if (isHit) storeHit(index, ray, hit);
         else storeMiss(index);
         return;
     }

@@ -10,7 +10,7 @@ layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer Em
 bool looksForEmitters(BakeScene bake) { return bake.emitterCount != 0u && bake.sampling != kSampleDirections; }
 
 // The balance heuristic.
-float emitterWeight(float density, float otherDensity) { return density / (density + otherDensity); }
+float emitterWeight(float pdf, float otherPdf) { return pdf / (pdf + otherPdf); }
 
 EmitterFace pickEmitter(BakeScene bake, float u) {
     float scaled = u * float(bake.emitterCount);
@@ -23,7 +23,7 @@ EmitterFace pickEmitter(BakeScene bake, float u) {
 // Where light is looked for: `toLight` unit, `radiance` 0 where nothing comes.
 struct EmitterSample {
     vec3 toLight;
-    float density;  // per steradian
+    float pdf;  // per steradian
     vec3 radiance;
     vec3 end;       // of the shadow ray
 };
@@ -40,13 +40,13 @@ EmitterSample sampleEmitter(BakeScene bake, vec3 origin, float pick, vec2 u) {
     found.toLight = away * inversesqrt(max(squared, 1e-30));
     float cosine = -dot(outward, found.toLight);
     found.radiance = cosine > 0.0 && squared > 0.0 ? face.radiance : vec3(0.0);
-    found.density = meanOf(face.radiance) / bake.emitterPower * squared / max(cosine, 1e-12);
+    found.pdf = meanOf(face.radiance) / bake.emitterPower * squared / max(cosine, 1e-12);
     found.end = point + face.offset * outward;
     return found;
 }
 
 // Density with which sampleEmitter finds the emitter that a path has run into.
-float densityOfEmitter(BakeScene bake, vec3 emission, float metres, float cosine) {
+float emitterPdf(BakeScene bake, vec3 emission, float metres, float cosine) {
     return meanOf(emission) / bake.emitterPower * metres * metres / max(cosine, 1e-12);
 }
 

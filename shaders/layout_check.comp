@@ -62,7 +62,7 @@ void main() {
     put(19u, hit.t);
     put(20u, hit.normal.z);
     put(21u, hit.material);
-    put(22u, hit.capped);
+    put(22u, hit.stepLimitReached);
     ViewParameters view = Views(numbers).at[1];
     put(23u, view.samplesPerPixel);
     put(24u, view.mode);

@@ -70,7 +70,7 @@ float glassReflectance(MaterialRecord material, float cosine) {
     float f0 = normalReflectance(material.indexOfRefraction);
     return mix(f0, 1.0, schlickWeight(cosine) * float(f0 > 0.0));
 }
-// Share of what is not reflected that goes on, by colour; the rest is scattered by a Lambert surface.
+// Fraction of what is not reflected that goes on, by color; the rest is scattered by a Lambert surface.
 vec3 glassTint(MaterialRecord material) { return material.transparency * material.albedo; }
 
 // ---- Everything else: a Lambert lobe and a GGX lobe ----
@@ -107,7 +107,7 @@ Lobes lobesOf(MaterialRecord material, vec3 albedo, vec3 normal, vec3 toViewer) 
     return lobes;
 }
 
-float ggxDensity(float cosine, float alpha) {
+float ggxPdf(float cosine, float alpha) {
     float a2 = alpha * alpha;
     float d = cosine * cosine * (a2 - 1.0) + 1.0;
     return a2 / (kPi * d * d);
@@ -120,7 +120,7 @@ float ggxShadow(float cosine, float alpha) {
 
 struct Scattering {
     vec3 value;     // of the reflection, times the cosine of the light
-    float density;  // with which `sampleLobes` gives this direction, per steradian
+    float pdf;  // with which `sampleLobes` gives this direction, per steradian
 };
 
 Scattering evaluateLobes(Lobes lobes, vec3 normal, vec3 toViewer, vec3 toLight) {
@@ -130,11 +130,11 @@ Scattering evaluateLobes(Lobes lobes, vec3 normal, vec3 toViewer, vec3 toLight) 
     Scattering s = Scattering(lobes.diffuse * (cosLight / kPi), (1.0 - lobes.pick) * cosLight / kPi);
     if (lobes.specular > 0.0) {
         vec3 half_ = normalize(toViewer + toLight);
-        float d = ggxDensity(clamp(dot(normal, half_), 0.0, 1.0), lobes.alpha);
+        float d = ggxPdf(clamp(dot(normal, half_), 0.0, 1.0), lobes.alpha);
         float viewerShadow = ggxShadow(cosViewer, lobes.alpha);
         vec3 fresnel = mix(lobes.specular0, vec3(1.0), schlickWeight(dot(toViewer, half_)));
         s.value += lobes.specular * fresnel * (d * viewerShadow * ggxShadow(cosLight, lobes.alpha) / (4.0 * cosViewer));
-        s.density += lobes.pick * viewerShadow * d / (4.0 * cosViewer);
+        s.pdf += lobes.pick * viewerShadow * d / (4.0 * cosViewer);
     }
     return s;
 }

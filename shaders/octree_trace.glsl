@@ -56,7 +56,7 @@ const uint kAxisInside = 3u;
 
 struct TraceStatistics {
     uint steps;
-    uint capped;
+    uint stepLimitReached;
 };
 
 // --- Small helpers ---
@@ -268,7 +268,7 @@ bool finishWalk(inout Walk walk, inout TraceStatistics statistics) {
         ++statistics.steps;
         state = stepWalk(walk);
     } while (state == kWalkGoesOn && statistics.steps != lastStep);
-    if (state == kWalkGoesOn) statistics.capped = 1u;
+    if (state == kWalkGoesOn) statistics.stepLimitReached = 1u;
     return state == kWalkHit;
 }
 
@@ -548,7 +548,7 @@ int octreeLeafLog2(Scene sceneBuffer, Hit hit) {
 // Where rays leave the surface.
 vec3 startOf(Surface surface) { return surface.position + surface.lift; }
 
-// Base colour of what was hit, linear.
+// Base color of what was hit, linear.
 vec3 albedoOf(Scene scene, Surface surface) {
     if (surface.lodColor != 0u) return linearFromSrgb(unpackUnorm4x8(surface.lodColor).rgb);
     return Materials(scene.header.materials).at[surface.material].albedo;

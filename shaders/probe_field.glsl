@@ -35,8 +35,8 @@ float metresOfCode(ProbeFieldRecord field, uint code) {
 }
 
 // A bilinear read needs its texel on the other side of the map where it leaves it.
-ivec2 wrappedTexel(ivec2 texel, uint edge) {
-    return borderSource(clamp(texel, ivec2(-1), ivec2(edge)) + 1, int(edge));
+ivec2 wrappedTexel(ivec2 texel, uint resolution) {
+    return borderSource(clamp(texel, ivec2(-1), ivec2(resolution)) + 1, int(resolution));
 }
 
 // First word of the proximity cell's list, or kNoProbeIndex outside the grid. `normal`: of the surface; 0 in free space.

@@ -17,9 +17,9 @@ const float kCompactWeightFloor = 1e-4;
 const float kSeenEnough = 0.1;  // of the eight probes around, by their trilinear weights
 const int kWideSteps = 2;
 const float kPlaneVoxels = 0.25;       // how far a texel's surface may lie off the plane of the point
-const float kPlaneSlackShare = 1e-3;   // of the distance to the plane: depth codes are no finer
+const float kPlaneSlackFraction = 1e-3;   // of the distance to the plane: depth codes are no finer
 const float kMixedTexelWeight = 0.05;
-const float kLeastTexelWeight = 0.02;  // of a neighbour that lies on the point's own texel's border
+const float kLeastTexelWeight = 0.02;  // of a neighbor that lies on the point's own texel's border
 const float kMuchUnseen = 0.5;
 const float kFacingAway = -0.1;
 const float kFlattest = 0.2;  // cosine
@@ -42,63 +42,63 @@ struct SurfacePoint {
 // Whether a depth texel shows a surface within a level of detail: one that does not face away from the viewer, as near as
 // the node is large. The node's own face says nothing of the planes in it.
 bool showsNode(ProbeFieldRecord field, ProbeEntry probe, SurfacePoint point, uint x, uint y) {
-    uint word = ProbeWords(probe.depthNormal).at[x + field.depthEdge * y];
+    uint word = ProbeWords(probe.depthNormal).at[x + field.depthResolution * y];
     if (isMiss(word)) return false;
     vec3 normal = normalOf(word);
     if (dot(normal, point.normal) < kFacingAway) return false;
-    vec3 direction = directionOfTexel(x, y, field.depthEdge);
+    vec3 direction = directionOfTexel(x, y, field.depthResolution);
     float metres = metresOfCode(field, depthCodeOf(word));
     vec3 apart = probe.position + metres * direction - point.position;
     float slack = point.spread + kPlaneVoxels * field.voxelMetres;
-    float footprint = texelAngle(field.depthEdge) * metres / max(-dot(direction, normal), kFlattest);
+    float footprint = texelAngle(field.depthResolution) * metres / max(-dot(direction, normal), kFlattest);
     return abs(dot(apart, normal)) < slack && dot(apart, apart) < (2.0 * slack + footprint) * (2.0 * slack + footprint);
 }
 
-// Share of the depth texels under one light texel that show the plane of the surface. Each is asked where its own ray
+// Fraction of the depth texels under one light texel that show the plane of the surface. Each is asked where its own ray
 // meets that plane, so that the slope of the surface does not matter and planes a voxel apart stay apart.
 float agreementOf(ProbeFieldRecord field, ProbeEntry probe, SurfacePoint point, ivec2 lightTexel) {
     float height = dot(point.position - probe.position, point.normal);  // of the plane, as the probe sees it
     if (height >= 0.0 && point.spread <= 0.0) return 0.0;
-    uint block = max(field.depthEdge / field.lightEdge, 1u);
-    float tolerance = max(kPlaneVoxels * field.voxelMetres, kPlaneSlackShare * -height);
+    uint block = max(field.depthResolution / field.lightResolution, 1u);
+    float tolerance = max(kPlaneVoxels * field.voxelMetres, kPlaneSlackFraction * -height);
     uint packed = packNormal(point.normal);
     uint agreeing = 0u;
     for (uint i = 0u; i < block * block; ++i) {
-        uint x = min(uint(lightTexel.x) * block + i % block, field.depthEdge - 1u);
-        uint y = min(uint(lightTexel.y) * block + i / block, field.depthEdge - 1u);
+        uint x = min(uint(lightTexel.x) * block + i % block, field.depthResolution - 1u);
+        uint y = min(uint(lightTexel.y) * block + i / block, field.depthResolution - 1u);
         if (point.spread > 0.0) {
             agreeing += uint(showsNode(field, probe, point, x, y));
             continue;
         }
-        uint word = ProbeWords(probe.depthNormal).at[x + field.depthEdge * y];
+        uint word = ProbeWords(probe.depthNormal).at[x + field.depthResolution * y];
         if (isMiss(word)) continue;
         if (word >> 16 != packed && dot(normalOf(word), point.normal) <= kSurfaceMinNormalDot) continue;
-        float cosine = dot(directionOfTexel(x, y, field.depthEdge), point.normal);
+        float cosine = dot(directionOfTexel(x, y, field.depthResolution), point.normal);
         if (abs(metresOfCode(field, depthCodeOf(word)) * cosine - height) < tolerance) ++agreeing;
     }
     return float(agreeing) / float(block * block);
 }
 
 // What a texel of mixed planes shows is a mixture of their light: it counts where there is nothing better.
-float purityWeight(float share) { return share >= 1.0 ? 1.0 : kMixedTexelWeight * share; }
+float purityWeight(float fraction) { return fraction >= 1.0 ? 1.0 : kMixedTexelWeight * fraction; }
 
 // Light of the texels around the direction to the point, those only that agree; w = how far they do, 0 to 1.
 vec4 lightSeenBy(ProbeFieldRecord field, ProbeEntry probe, SurfacePoint point) {
-    vec2 at = texelCoordinate(point.position - probe.position, field.lightEdge) - 0.5;
+    vec2 at = texelCoordinate(point.position - probe.position, field.lightResolution) - 0.5;
     ivec2 low = ivec2(floor(at));
     vec2 fraction = at - vec2(low);
     vec4 sum = vec4(0.0);
     float covered = 0.0;
     for (int i = 0; i < 4; ++i) {
         ivec2 offset = ivec2(i & 1, i >> 1);
-        ivec2 texel = wrappedTexel(low + offset, field.lightEdge);
-        float share = agreementOf(field, probe, point, texel);
-        if (share <= 0.0) continue;
+        ivec2 texel = wrappedTexel(low + offset, field.lightResolution);
+        float fraction = agreementOf(field, probe, point, texel);
+        if (fraction <= 0.0) continue;
         vec2 near = max(mix(1.0 - fraction, fraction, vec2(offset)), vec2(kLeastTexelWeight));
-        float weight = near.x * near.y * purityWeight(share);
-        uint word = ProbeWords(probe.light).at[uint(texel.x) + field.lightEdge * uint(texel.y)];
+        float weight = near.x * near.y * purityWeight(fraction);
+        uint word = ProbeWords(probe.light).at[uint(texel.x) + field.lightResolution * uint(texel.y)];
         sum += weight * vec4(unpackLight(word), 1.0);
-        covered += near.x * near.y * (share >= 1.0 ? 1.0 : 0.25 * share * share);
+        covered += near.x * near.y * (fraction >= 1.0 ? 1.0 : 0.25 * fraction * fraction);
     }
     return sum.w > 0.0 ? vec4(sum.rgb / sum.w, min(kTexelConfidence * covered, 1.0)) : vec4(0.0);
 }
@@ -107,10 +107,10 @@ vec4 lightSeenBy(ProbeFieldRecord field, ProbeEntry probe, SurfacePoint point) {
 bool ownTexelSees(ProbeFieldRecord field, ProbeEntry probe, SurfacePoint point) {
     vec3 toPoint = point.position - probe.position;
     if (dot(toPoint, toPoint) < 1e-12) return false;
-    uint texel = texelIndex(toPoint, field.depthEdge);
-    if (point.spread > 0.0) return showsNode(field, probe, point, texel % field.depthEdge, texel / field.depthEdge);
+    uint texel = texelIndex(toPoint, field.depthResolution);
+    if (point.spread > 0.0) return showsNode(field, probe, point, texel % field.depthResolution, texel / field.depthResolution);
     uint word = ProbeWords(probe.depthNormal).at[texel];
-    return seesSurface(word, toPoint, point.normal, field.depthEdge, field.depthScaleAndLogRange);
+    return seesSurface(word, toPoint, point.normal, field.depthResolution, field.depthScaleAndLogRange);
 }
 
 struct TexelSum {
@@ -144,7 +144,7 @@ uint listOf(ProbeFieldRecord field, SurfacePoint point) {
 // Of the probes that the cell names; where they do not see the point, of the eight around. One loop for both: drivers unroll
 // what they inline, and lightSeenBy is long.
 vec4 lightOfTexels(ProbeFieldRecord field, SurfacePoint point) {
-    if (field.lightEdge == 0u || field.depthEdge == 0u) return vec4(0.0);
+    if (field.lightResolution == 0u || field.depthResolution == 0u) return vec4(0.0);
     uint list = listOf(field, point);
     if (list == kNoProbeIndex) return vec4(0.0);
     ivec3 cell = probeCellOf(field, point.position);
@@ -174,12 +174,12 @@ struct BilinearRead {
 BilinearRead bilinearRead(vec3 direction, uint interior) {
     vec2 at = borderedCoordinate(direction, interior) - 0.5;
     ivec2 low = clamp(ivec2(floor(at)), ivec2(0), ivec2(interior));
-    uint edge = interior + 2u;
-    return BilinearRead(uint(low.x) + edge * uint(low.y), edge, clamp(at - vec2(low), vec2(0.0), vec2(1.0)));
+    uint resolution = interior + 2u;
+    return BilinearRead(uint(low.x) + resolution * uint(low.y), resolution, clamp(at - vec2(low), vec2(0.0), vec2(1.0)));
 }
 
 vec3 irradianceOf(ProbeFieldRecord field, ProbeEntry probe, vec3 normal) {
-    BilinearRead r = bilinearRead(normal, field.irradianceEdge);
+    BilinearRead r = bilinearRead(normal, field.irradianceResolution);
     ProbeWords words = ProbeWords(probe.irradiance);
     vec3 low = mix(unpackLight(words.at[r.index]), unpackLight(words.at[r.index + 1u]), r.fraction.x);
     uint next = r.index + r.rowStep;
@@ -188,7 +188,7 @@ vec3 irradianceOf(ProbeFieldRecord field, ProbeEntry probe, vec3 normal) {
 }
 
 vec2 momentsOf(ProbeFieldRecord field, ProbeEntry probe, vec3 direction) {
-    BilinearRead r = bilinearRead(direction, field.momentsEdge);
+    BilinearRead r = bilinearRead(direction, field.momentsResolution);
     ProbeWords words = ProbeWords(probe.moments);
     vec2 low = mix(unpackMoments(words.at[r.index]), unpackMoments(words.at[r.index + 1u]), r.fraction.x);
     uint next = r.index + r.rowStep;
@@ -196,9 +196,9 @@ vec2 momentsOf(ProbeFieldRecord field, ProbeEntry probe, vec3 direction) {
     return mix(low, high, r.fraction.y);
 }
 
-// Chebyshev's bound on the share of what the lobe sees beyond this distance, made steeper.
+// Chebyshev's bound on the fraction of what the lobe sees beyond this distance, made steeper.
 float visibilityFrom(ProbeFieldRecord field, ProbeEntry probe, vec3 toPoint) {
-    if (field.momentsEdge == 0u) return 1.0;
+    if (field.momentsResolution == 0u) return 1.0;
     float distance = length(toPoint);
     if (distance < 1e-6) return 1.0;
     vec2 moments = momentsOf(field, probe, toPoint);
@@ -223,7 +223,7 @@ float curbed(float weight) { return max(weight < 0.2 ? weight * weight * weight 
 // Square roots are blended: one probe beside a lamp or a window does not outshine the seven others.
 struct RootSum {
     vec4 weighed;  // roots of I times weight; the weights
-    float seen;    // share of the neighbourhood that sees the point
+    float seen;    // fraction of the neighborhood that sees the point
 };
 
 void addProbe(ProbeFieldRecord field, ProbeEntry probe, SurfacePoint point, vec3 biased, float near, inout RootSum sum) {
@@ -252,8 +252,8 @@ vec4 lightOfGrid(ProbeFieldRecord field, SurfacePoint point) {
     vec3 inside = clamp((biased - field.start) / field.step, vec3(0.0), last);
     vec3 root = vec3(0.0);
     bool found = false;
-    float share = 1.0;  // of this round
-    for (uint round = 0u; round < 2u && share > 0.0; ++round) {
+    float fraction = 1.0;  // of this round
+    for (uint round = 0u; round < 2u && fraction > 0.0; ++round) {
         RootSum sum = RootSum(vec4(0.0), 0.0);
         for (int z = low.z; z <= high.z; ++z) {
             for (int y = low.y; y <= high.y; ++y) {
@@ -265,9 +265,9 @@ vec4 lightOfGrid(ProbeFieldRecord field, SurfacePoint point) {
                 }
             }
         }
-        if (sum.weighed.w > 0.0) root = mix(root, sum.weighed.rgb / sum.weighed.w, found ? share : 1.0);
+        if (sum.weighed.w > 0.0) root = mix(root, sum.weighed.rgb / sum.weighed.w, found ? fraction : 1.0);
         found = found || sum.weighed.w > 0.0;
-        share = outsideOfProbes(field, biased) * (1.0 - min(sum.seen / kSeenEnough, 1.0));
+        fraction = outsideOfProbes(field, biased) * (1.0 - min(sum.seen / kSeenEnough, 1.0));
         low = max(cell - kWideSteps, ivec3(0));
         high = min(cell + 1 + kWideSteps, field.counts - 1);
     }
@@ -289,7 +289,7 @@ ProbeLight lookUpProbes(ProbeFieldRecord field, vec3 position, vec3 normal, floa
     vec4 texels = lightOfTexels(field, point);
     vec4 rest = vec4(0.0);
     bool fromGrid = false;
-    if (texels.w < 1.0 && field.irradianceEdge != 0u) {
+    if (texels.w < 1.0 && field.irradianceResolution != 0u) {
         rest = lightOfGrid(field, point);
         fromGrid = rest.w > 0.0;
         if (!fromGrid) rest = lightOfNearest(field, point);
@@ -304,7 +304,7 @@ ProbeLight lookUpProbes(ProbeFieldRecord field, vec3 position, vec3 normal, floa
 }
 
 // What a picture of the tiers shows: green texels, yellow traced, blue the eight around, red the nearest, magenta none.
-vec3 tierColour(uint tier) {
+vec3 tierColor(uint tier) {
     if (tier == kTierTexels) return vec3(0.20, 0.62, 0.24);
     if (tier == kTierTraced) return vec3(0.85, 0.75, 0.15);
     if (tier == kTierCompact) return vec3(0.16, 0.36, 0.78);

@@ -25,7 +25,7 @@ ProbeAnswerRecord answerTrace(ProbeFieldRecord field, ProbeQueryRecord query) {
     FieldHit hit = push.mode == kQueryTraceFilled ? traceFieldFilled(field, ray, statistics)
                                                   : traceField(field, ray, statistics);
     return ProbeAnswerRecord(lightOfHit(field, hit), hit.t, hit.normal, hit.state, vec4(0.0), hit.probe,
-                             statistics.lowSteps, statistics.highSteps, statistics.probes | statistics.capped << 16);
+                             statistics.lowSteps, statistics.highSteps, statistics.probes | statistics.stepLimitReached << 16);
 }
 
 void main() {

@@ -110,7 +110,7 @@ FieldHit traceFieldFilled(ProbeFieldRecord field, FieldRay ray, inout FieldStati
     uint corner = nearestCorner(field, cell, ray.origin);
     ProbeEntry probe = probeAtCorner(field, cell, corner);
     if (probe.isActive == 0u) return hit;
-    uint texel = texelIndex(ray.direction, field.depthEdge);
+    uint texel = texelIndex(ray.direction, field.depthResolution);
     uint word = ProbeWords(probe.depthNormal).at[texel];
     if (isMiss(word)) return hit;
     float depth = metresOfCode(field, depthCodeOf(word));
@@ -124,12 +124,12 @@ FieldHit traceFieldFilled(ProbeFieldRecord field, FieldRay ray, inout FieldStati
 
 // I at the surface that a trace found.
 vec3 lightOfHit(ProbeFieldRecord field, FieldHit hit) {
-    if (hit.state != kFieldHit && hit.state != kFieldFilled || field.lightEdge == 0u) return vec3(0.0);
+    if (hit.state != kFieldHit && hit.state != kFieldFilled || field.lightResolution == 0u) return vec3(0.0);
     ProbeEntry probe = ProbeEntries(field.probes).at[hit.probe];
-    uint block = max(field.depthEdge / field.lightEdge, 1u);
-    uint x = min(hit.texel % field.depthEdge / block, field.lightEdge - 1u);
-    uint y = min(hit.texel / field.depthEdge / block, field.lightEdge - 1u);
-    return unpackLight(ProbeWords(probe.light).at[x + field.lightEdge * y]);
+    uint block = max(field.depthResolution / field.lightResolution, 1u);
+    uint x = min(hit.texel % field.depthResolution / block, field.lightResolution - 1u);
+    uint y = min(hit.texel / field.depthResolution / block, field.lightResolution - 1u);
+    return unpackLight(ProbeWords(probe.light).at[x + field.lightResolution * y]);
 }
 
 #endif

@@ -18,7 +18,7 @@
 
 const float kDegenerateVoxels = 0.03;  // shorter pieces of a ray are left out
 const float kSamePlaneVoxels = 0.25;   // how far two texels' surfaces may lie apart and be one plane
-const float kSamePlaneShare = 1e-3;    // of the distance to the plane: depth codes are no finer
+const float kSamePlaneFraction = 1e-3;    // of the distance to the plane: depth codes are no finer
 
 struct FieldHit {
     uint state;   // kField...
@@ -32,7 +32,7 @@ struct FieldStatistics {
     uint lowSteps;
     uint highSteps;
     uint probes;
-    uint capped;  // walks that were given up
+    uint stepLimitReached;  // walks that were given up
 };
 
 struct FieldRay {
@@ -99,14 +99,14 @@ struct TexelWalk {
     float s;     // where it entered
 };
 
-TexelWalk beginTexelWalk(FieldSegment segment, float s, uint edge) {
+TexelWalk beginTexelWalk(FieldSegment segment, float s, uint resolution) {
     TexelWalk walk;
-    vec2 at = (segment.start + s * segment.line) * float(edge);
-    walk.texel = clamp(ivec2(floor(at)), ivec2(0), ivec2(edge - 1u));
+    vec2 at = (segment.start + s * segment.line) * float(resolution);
+    walk.texel = clamp(ivec2(floor(at)), ivec2(0), ivec2(resolution - 1u));
     walk.way = ivec2(segment.line.x >= 0.0 ? 1 : -1, segment.line.y >= 0.0 ? 1 : -1);
-    vec2 pace = max(abs(segment.line) * float(edge), vec2(1e-20));
+    vec2 pace = max(abs(segment.line) * float(resolution), vec2(1e-20));
     walk.perTexel = 1.0 / pace;
-    vec2 start = segment.start * float(edge);
+    vec2 start = segment.start * float(resolution);
     vec2 border = vec2(walk.texel + max(walk.way, ivec2(0)));
     walk.next = abs(border - start) * walk.perTexel;
     walk.s = s;
@@ -116,17 +116,17 @@ TexelWalk beginTexelWalk(FieldSegment segment, float s, uint edge) {
 float exitOf(TexelWalk walk, float last) { return clamp(min(walk.next.x, walk.next.y), walk.s, last); }
 
 // Ends of a line may lie on the border of the map; rounding must not lead over it.
-void stepTexel(inout TexelWalk walk, float exit, uint edge) {
+void stepTexel(inout TexelWalk walk, float exit, uint resolution) {
     walk.s = exit;
     int axis = walk.next.x <= walk.next.y ? 0 : 1;
     int texel = walk.texel[axis] + walk.way[axis];
-    bool inside = texel >= 0 && texel < int(edge);
+    bool inside = texel >= 0 && texel < int(resolution);
     if (inside) walk.texel[axis] = texel;
     walk.next[axis] = inside ? walk.next[axis] + walk.perTexel[axis] : 1e30;
 }
 
-uint minCodeAt(ProbeEntry probe, ivec2 texel, uint edge) {
-    uint index = uint(texel.x) + edge * uint(texel.y);
+uint minCodeAt(ProbeEntry probe, ivec2 texel, uint resolution) {
+    uint index = uint(texel.x) + resolution * uint(texel.y);
     return ProbeWords(probe.minDepth).at[index >> 1] >> ((index & 1u) * 16u) & 0xffffu;
 }
 
@@ -141,27 +141,27 @@ float heightAbove(SeenPlane plane, FieldSegment segment, float t) {
 }
 
 float planeSlack(ProbeFieldRecord field, SeenPlane plane) {
-    return max(kSamePlaneVoxels * field.voxelMetres, kSamePlaneShare * abs(plane.height));
+    return max(kSamePlaneVoxels * field.voxelMetres, kSamePlaneFraction * abs(plane.height));
 }
 
 bool showsPlane(ProbeFieldRecord field, ProbeEntry probe, SeenPlane plane, ivec2 texel) {
-    uint word = ProbeWords(probe.depthNormal).at[uint(texel.x) + field.depthEdge * uint(texel.y)];
+    uint word = ProbeWords(probe.depthNormal).at[uint(texel.x) + field.depthResolution * uint(texel.y)];
     if (isMiss(word) || dot(normalOf(word), plane.normal) <= kSurfaceMinNormalDot) return false;
-    vec3 view = directionOfTexel(uint(texel.x), uint(texel.y), field.depthEdge);
+    vec3 view = directionOfTexel(uint(texel.x), uint(texel.y), field.depthResolution);
     float height = metresOfCode(field, depthCodeOf(word)) * dot(view, plane.normal);
     return abs(height - plane.height) < planeSlack(field, plane);
 }
 
 // Whether the probe sees a plane at a point of it (relative to the probe): by four texels, as the proximity grid asks.
 bool seesPlaneAt(ProbeFieldRecord field, ProbeEntry probe, SeenPlane plane, vec3 point) {
-    vec2 at = texelCoordinate(point, field.depthEdge) - 0.5;
+    vec2 at = texelCoordinate(point, field.depthResolution) - 0.5;
     ivec2 low = ivec2(floor(at));
     vec2 fraction = at - vec2(low);
     float agreeing = 0.0;
     for (int i = 0; i < 4; ++i) {
         ivec2 offset = ivec2(i & 1, i >> 1);
         vec2 near = mix(1.0 - fraction, fraction, vec2(offset));
-        if (showsPlane(field, probe, plane, wrappedTexel(low + offset, field.depthEdge))) agreeing += near.x * near.y;
+        if (showsPlane(field, probe, plane, wrappedTexel(low + offset, field.depthResolution))) agreeing += near.x * near.y;
     }
     return agreeing >= kSurfaceMinAgreement;
 }
@@ -169,20 +169,20 @@ bool seesPlaneAt(ProbeFieldRecord field, ProbeEntry probe, SeenPlane plane, vec3
 // The texels between two places of a line. A miss is one of this piece only.
 uint traceTexels(ProbeFieldRecord field, ProbeEntry probe, FieldSegment segment, vec2 span, inout float tMin,
                  inout FieldHit hit, inout FieldStatistics statistics) {
-    uint edge = field.depthEdge;
-    TexelWalk walk = beginTexelWalk(segment, span.x, edge);
+    uint resolution = field.depthResolution;
+    TexelWalk walk = beginTexelWalk(segment, span.x, resolution);
     float tBefore = timeAt(segment, span.x);
     float before = distanceAt(segment, tBefore);
-    for (uint step = 0u; step < 2u * edge + 2u; ++step) {
+    for (uint step = 0u; step < 2u * resolution + 2u; ++step) {
         ++statistics.highSteps;
         float exit = exitOf(walk, span.y);
         float tAfter = timeAt(segment, exit);
         float after = distanceAt(segment, tAfter);
-        uint index = uint(walk.texel.x) + edge * uint(walk.texel.y);
+        uint index = uint(walk.texel.x) + resolution * uint(walk.texel.y);
         uint word = ProbeWords(probe.depthNormal).at[index];
         float depth = metresOfCode(field, depthCodeOf(word));
         if (max(before, after) >= depth) {
-            vec3 view = directionOfTexel(uint(walk.texel.x), uint(walk.texel.y), edge);
+            vec3 view = directionOfTexel(uint(walk.texel.x), uint(walk.texel.y), resolution);
             SeenPlane plane = SeenPlane(normalOf(word), depth * dot(view, normalOf(word)));
             float pace = dot(segment.direction, plane.normal);
             // Behind the middle of the texel and still before its plane: the ray is free.
@@ -201,34 +201,34 @@ uint traceTexels(ProbeFieldRecord field, ProbeEntry probe, FieldSegment segment,
             }
         }
         if (exit >= span.y) return kFieldMiss;
-        stepTexel(walk, exit, edge);
+        stepTexel(walk, exit, resolution);
         tBefore = tAfter;
         before = after;
     }
-    ++statistics.capped;
+    ++statistics.stepLimitReached;
     return kFieldUnknown;
 }
 
 uint traceSegment(ProbeFieldRecord field, ProbeEntry probe, FieldSegment segment, bool highOnly, inout float tMin,
                   inout FieldHit hit, inout FieldStatistics statistics) {
     if (highOnly) return traceTexels(field, probe, segment, vec2(0.0, 1.0), tMin, hit, statistics);
-    uint edge = field.depthEdge / kMinDepthBlock;
-    TexelWalk walk = beginTexelWalk(segment, 0.0, edge);
+    uint resolution = field.depthResolution / kMinDepthBlock;
+    TexelWalk walk = beginTexelWalk(segment, 0.0, resolution);
     float before = distanceAt(segment, segment.t0);
-    for (uint step = 0u; step < 2u * edge + 2u; ++step) {
+    for (uint step = 0u; step < 2u * resolution + 2u; ++step) {
         ++statistics.lowSteps;
         float exit = exitOf(walk, 1.0);
         float after = distanceAt(segment, timeAt(segment, exit));
         // The distance is convex along a line, so within the texel none is larger than at its ends.
-        if (max(before, after) >= metresOfCode(field, minCodeAt(probe, walk.texel, edge))) {
+        if (max(before, after) >= metresOfCode(field, minCodeAt(probe, walk.texel, resolution))) {
             uint state = traceTexels(field, probe, segment, vec2(walk.s, exit), tMin, hit, statistics);
             if (state != kFieldMiss) return state;
         }
         if (exit >= 1.0) return kFieldMiss;
-        stepTexel(walk, exit, edge);
+        stepTexel(walk, exit, resolution);
         before = after;
     }
-    ++statistics.capped;
+    ++statistics.stepLimitReached;
     return kFieldUnknown;
 }
 

@@ -42,24 +42,24 @@ vec2 firstPair(uint pixel, uint number) {
 struct ReferencePath {
     Ray ray;
     vec3 throughput;
-    float density;    // of the ray's direction, per steradian; < 0: no emitter sample could have found it
+    float pdf;    // of the ray's direction, per steradian; < 0: no emitter sample could have found it
     float travelled;  // metres behind the last vertex that scattered, through glass
     uint lastGlass;   // the body that the ray is in
 };
 
-// True when glass lets the path go on in a straight line or reflects it; false at its Lambert share.
+// True when glass lets the path go on in a straight line or reflects it; false at its Lambert fraction.
 bool referenceGlass(Scene scene, inout ReferencePath path, Hit hit, Surface surface, MaterialRecord material) {
     bool enters = entersGlass(surface, path.lastGlass);
     path.lastGlass = surface.material;
     if (enters) {
         if (random() < glassReflectance(material, abs(dot(surface.normal, path.ray.direction)))) {
             path.ray = Ray(startOf(surface), kInfinity, reflect(path.ray.direction, surface.normal), 0.0);
-            path.density = -1.0;
+            path.pdf = -1.0;
             path.lastGlass = kNoMaterial;
             return true;
         }
         if (random() >= material.transparency) {
-            path.throughput /= max(1.0 - material.transparency, 1e-6);  // lobesOf has the share again
+            path.throughput /= max(1.0 - material.transparency, 1e-6);  // lobesOf has the fraction again
             return false;
         }
         path.throughput *= material.albedo;
@@ -81,14 +81,14 @@ vec3 emitterAt(BakeScene bake, Lobes lobes, vec3 origin, vec3 normal, vec3 toVie
     if (maxOf(s.value) <= 0.0) return vec3(0.0);
     vec3 way = found.end - origin;
     float metres = length(way);
-    vec3 share = transmittance(Scene(bake.scene), Ray(origin, metres, way / metres, 0.0), counts);
-    return share * found.radiance * s.value / (found.density + s.density);
+    vec3 fraction = transmittance(Scene(bake.scene), Ray(origin, metres, way / metres, 0.0), counts);
+    return fraction * found.radiance * s.value / (found.pdf + s.pdf);
 }
 
-// Share of the emission that a path has run into which is not left to emitterAt.
-float shareOfDirection(BakeScene bake, ReferencePath path, vec3 emission, float cosine) {
-    if (path.density < 0.0 || !looksForEmitters(bake)) return 1.0;
-    return emitterWeight(path.density, densityOfEmitter(bake, emission, path.travelled, cosine));
+// Fraction of the emission that a path has run into which is not left to emitterAt.
+float fractionOfDirection(BakeScene bake, ReferencePath path, vec3 emission, float cosine) {
+    if (path.pdf < 0.0 || !looksForEmitters(bake)) return 1.0;
+    return emitterWeight(path.pdf, emitterPdf(bake, emission, path.travelled, cosine));
 }
 
 // I at a point of a surface, `origin` a little off it; `first` picks the first direction.
@@ -111,7 +111,7 @@ vec3 referenceLight(BakeScene bake, vec3 origin, vec3 normal, vec2 first) {
         vec3 toViewer = -path.ray.direction;
         vec3 emission = emissionOf(material);
         if (maxOf(emission) > 0.0)
-            total += path.throughput * emission * shareOfDirection(bake, path, emission, dot(surface.normal, toViewer));
+            total += path.throughput * emission * fractionOfDirection(bake, path, emission, dot(surface.normal, toViewer));
         if (bounces++ >= bake.maxBounces) return total;
         vec3 from = startOf(surface);
         Lobes lobes = lobesOf(material, albedoOf(scene, surface), surface.normal, toViewer);
@@ -122,13 +122,13 @@ vec3 referenceLight(BakeScene bake, vec3 origin, vec3 normal, vec2 first) {
         vec3 direction = sampleLobes(lobes, surface.normal, toViewer, vec2(random(), random()), random());
         Scattering s = evaluateLobes(lobes, surface.normal, toViewer, direction);
         if (maxOf(s.value) <= 0.0) return total;
-        path.throughput *= s.value / s.density;
+        path.throughput *= s.value / s.pdf;
         if (bounces >= kRouletteBounce) {
             float survival = min(maxOf(path.throughput), 0.95);
             if (random() >= survival) return total;
             path.throughput /= survival;
         }
-        path = ReferencePath(Ray(from, kInfinity, direction, 0.0), path.throughput, s.density, 0.0, kNoMaterial);
+        path = ReferencePath(Ray(from, kInfinity, direction, 0.0), path.throughput, s.pdf, 0.0, kNoMaterial);
     }
     return total;
 }

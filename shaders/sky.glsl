@@ -2,14 +2,14 @@
 #ifndef PFVOX_SKY_GLSL
 #define PFVOX_SKY_GLSL
 
-struct SkyColours {
+struct SkyColors {
     vec3 zenith;
     vec3 horizon;
     vec3 ground;
 };
 
 // Radiance from a unit direction.
-vec3 skyAlong(SkyColours sky, vec3 direction) {
+vec3 skyAlong(SkyColors sky, vec3 direction) {
     float up = direction.y;
     if (up >= 0.0) return mix(sky.horizon, sky.zenith, sqrt(up));
     return mix(sky.horizon, sky.ground, smoothstep(0.0, 0.9, -up));

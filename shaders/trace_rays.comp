@@ -26,7 +26,7 @@ void main() {
     TraceStatistics statistics = TraceStatistics(0u, 0u);
     Hit hit = traceScene(scene, ray, anyHit, statistics);
     HitRecord result = HitRecord(ivec3(0), hit.t, vec3(0.0), kNoInstance, 0u, 0u, statistics.steps,
-                                 statistics.capped, 0u, 0, 0u, 0u);
+                                 statistics.stepLimitReached, 0u, 0, 0u, 0u);
     if (hit.instance != kNoInstance) {
         result.instance = Instances(scene.header.instances).at[hit.instance].id;
         if (!anyHit) {

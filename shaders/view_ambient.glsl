@@ -7,7 +7,7 @@
 #include "emitters.glsl"
 
 const uint kLampCandidates = 4u;     // of which one gets a ray, by the light that it would give
-const float kBounceShare = 0.6;      // of the guess for an open surface, at what is near another one
+const float kBounceFraction = 0.6;      // of the guess for an open surface, at what is near another one
 const float kNearestLamp = 0.1;      // of a voxel's area: nearer faces give no more than from there
 
 // A faint fill from the side keeps the faces of a shaded voxel apart.
@@ -33,7 +33,7 @@ vec3 nearbyRadiance(ViewParameters view, Scene scene, Ray ray, inout RayCounts c
         bounced = albedoOf(scene, surface) * ambientRadiance(view, surface.normal);
     }
     float open = min(hit.t, ground) / ray.tMax;
-    return mix(kBounceShare * bounced, sky, open * open);
+    return mix(kBounceFraction * bounced, sky, open * open);
 }
 
 // I of all emitters: of a few candidates one is picked by what it would give unhidden (Talbot et al. 2005, "Importance
@@ -54,12 +54,12 @@ vec3 lampLight(ViewParameters view, Scene scene, SurfacePart part, uint key, uin
         EmitterSample face = sampleEmitter(lamps, origin, pick, hashPair(joinHash(key, 2u), kLampCandidates * index + i));
         float cosine = dot(part.normal, face.toLight);
         if (cosine <= 0.0 || maxOf(face.radiance) <= 0.0) continue;
-        vec3 given = face.radiance * (cosine / (kPi * max(face.density, least * meanOf(face.radiance))));
+        vec3 given = face.radiance * (cosine / (kPi * max(face.pdf, least * meanOf(face.radiance))));
         float weight = meanOf(given);
         sum += weight;
-        float share = weight / sum;
-        bool taken = chance.y < share;
-        chance.y = taken ? chance.y / share : (chance.y - share) / max(1.0 - share, 1e-6);
+        float fraction = weight / sum;
+        bool taken = chance.y < fraction;
+        chance.y = taken ? chance.y / fraction : (chance.y - fraction) / max(1.0 - fraction, 1e-6);
         if (!taken) continue;
         light = given / weight;
         end = face.end;

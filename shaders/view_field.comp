@@ -5,27 +5,27 @@
 #extension GL_EXT_buffer_reference_uvec2 : require
 
 #include "view_frame.glsl"
-#include "view_colours.glsl"
+#include "view_colors.glsl"
 #include "probe_trace.glsl"
 
 const float kSameDistance = 0.01;  // parts of it, beside a voxel
 
-vec3 stateColour(FieldHit found) {
+vec3 stateColor(FieldHit found) {
     if (found.state == kFieldHit) return vec3(0.20, 0.62, 0.24) * faceShade(found.normal);
     return found.state == kFieldMiss ? vec3(0.16, 0.36, 0.78) : vec3(0.90, 0.45, 0.08);
 }
 
-// Grey the same, nearly black both nothing; yellow to red another distance; cyan a hit where nothing is, purple nothing
+// Gray the same, nearly black both nothing; yellow to red another distance; cyan a hit where nothing is, purple nothing
 // where something is; orange unknown.
-vec3 differenceColour(FieldHit found, bool struck, float t, vec3 normal, float voxelMetres, out bool agrees) {
+vec3 differenceColor(FieldHit found, bool isHit, float t, vec3 normal, float voxelMetres, out bool agrees) {
     agrees = false;
     if (found.state == kFieldUnknown) return vec3(0.90, 0.45, 0.08);
     bool hit = found.state == kFieldHit;
-    if (hit && !struck) return vec3(0.10, 0.75, 0.85);
-    if (!hit && struck) return vec3(0.55, 0.05, 0.70);
-    float apart = struck ? abs(found.t - t) : 0.0;
+    if (hit && !isHit) return vec3(0.10, 0.75, 0.85);
+    if (!hit && isHit) return vec3(0.55, 0.05, 0.70);
+    float apart = isHit ? abs(found.t - t) : 0.0;
     agrees = apart <= voxelMetres + kSameDistance * t;
-    if (agrees) return struck ? vec3(0.30) * faceShade(normal) : kBackground;
+    if (agrees) return isHit ? vec3(0.30) * faceShade(normal) : kBackground;
     return mix(vec3(0.90, 0.75, 0.05), vec3(0.85, 0.05, 0.02), clamp(4.0 * apart / max(t, 1e-6), 0.0, 1.0));
 }
 
@@ -41,22 +41,22 @@ void main() {
         FieldHit found = traceField(field, FieldRay(ray.origin, ray.direction, kInfinity, false), fieldStatistics);
         count(kCountFieldStates + found.state, 1u);
         float distance = found.state == kFieldHit ? found.t : kInfinity;
-        vec3 colour = stateColour(found);
+        vec3 color = stateColor(found);
         if (view.mode == kViewFieldDifference) {
             TraceStatistics statistics = TraceStatistics(0u, 0u);
             ray.cone = 0.0;
             Hit hit = traceClosest(scene, ray, statistics);
-            bool struck = hit.instance != kNoInstance;
+            bool isHit = hit.instance != kNoInstance;
             vec3 normal = vec3(0.0, 1.0, 0.0);
-            if (struck) normal = surfaceOf(scene, ray, hit).normal;
+            if (isHit) normal = surfaceOf(scene, ray, hit).normal;
             bool agrees;
-            colour = differenceColour(found, struck, hit.t, normal, field.voxelMetres, agrees);
-            distance = struck ? hit.t : kInfinity;
+            color = differenceColor(found, isHit, hit.t, normal, field.voxelMetres, agrees);
+            distance = isHit ? hit.t : kInfinity;
             count(statistics);
-            count(kCountHits, uint(struck));
+            count(kCountHits, uint(isHit));
             count(kCountFieldAgrees, uint(agrees));
         }
-        writeColour(view, pixel.index, colour, distance);
+        writeColor(view, pixel.index, color, distance);
     }
     endCounting();
 }

@@ -14,7 +14,7 @@
 layout(local_size_x = kViewGroupEdge, local_size_y = kViewGroupEdge) in;
 
 layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer Parameters { ViewParameters view; };
-layout(buffer_reference, std430, buffer_reference_align = 16) buffer Colours { vec4 at[]; };
+layout(buffer_reference, std430, buffer_reference_align = 16) buffer Colors { vec4 at[]; };
 layout(buffer_reference, std430, buffer_reference_align = 8) buffer Counts { uvec2 at[]; };
 layout(buffer_reference, std430, buffer_reference_align = 16) buffer SeenPixels { SeenPixel at[]; };
 layout(buffer_reference, std430, buffer_reference_align = 16) buffer SeenShines { SeenShine at[]; };
@@ -51,7 +51,7 @@ Ray cameraRay(ViewParameters view, uvec2 pixel) {
 }
 
 vec3 skyRadiance(ViewParameters view, vec3 direction) {
-    return skyAlong(SkyColours(view.skyZenith, view.skyHorizon, view.skyGround), direction);
+    return skyAlong(SkyColors(view.skyZenith, view.skyHorizon, view.skyGround), direction);
 }
 
 // ---- What is handed from pass to pass ----
@@ -106,11 +106,11 @@ SurfacePart partOf(Scene scene, Surface surface) {
                        materialOf(scene, surface), albedoOf(scene, surface));
 }
 
-// The colour of one sample, for the screen but for its encoding; `distance` is that of the nearest sample in the end.
-void writeColour(ViewParameters view, uint index, vec3 colour, float distance) {
-    vec4 before = push.sampleIndex == 0u ? vec4(vec3(0.0), kInfinity) : Colours(push.colours).at[index];
-    Colours(push.colours).at[index] =
-        vec4(before.rgb + colour / float(view.samplesPerPixel), min(before.w, distance));
+// The color of one sample, for the screen but for its encoding; `distance` is that of the nearest sample in the end.
+void writeColor(ViewParameters view, uint index, vec3 color, float distance) {
+    vec4 before = push.sampleIndex == 0u ? vec4(vec3(0.0), kInfinity) : Colors(push.colors).at[index];
+    Colors(push.colors).at[index] =
+        vec4(before.rgb + color / float(view.samplesPerPixel), min(before.w, distance));
 }
 
 // ---- Sums: a group adds up, then to memory ----
@@ -126,7 +126,7 @@ void count(uint what, uint amount) {
 }
 void count(TraceStatistics statistics) {
     count(kCountSteps, statistics.steps);
-    count(kCountCapped, statistics.capped);
+    count(kCountStepLimit, statistics.stepLimitReached);
 }
 void endCounting() {
     barrier();

@@ -18,7 +18,7 @@ float groundAlong(ViewParameters view, Ray ray) {
 }
 
 // How much of what is seen at a point of the ground is the ground; the rest is the background.
-float groundShare(ViewParameters view, vec3 position) {
+float groundFraction(ViewParameters view, vec3 position) {
     return 1.0 - smoothstep(kGroundFades, 1.0, length((position - view.groundMiddle).xz) / view.groundRadius);
 }
 

@@ -1,4 +1,4 @@
-// Colours of a scene without probes: indirect light is guessed.
+// Colors of a scene without probes: indirect light is guessed.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_buffer_reference : require

@@ -1,17 +1,17 @@
-// The colour of each pixel from what earlier passes found: the including program says where indirect light comes from.
+// The color of each pixel from what earlier passes found: the including program says where indirect light comes from.
 #include "view_lighting.glsl"
-#include "view_colours.glsl"
+#include "view_colors.glsl"
 
-vec3 finalColour(ViewParameters view, Ray ray, SeenPixel seen, uint index, vec3 radiance) {
+vec3 finalColor(ViewParameters view, Ray ray, SeenPixel seen, uint index, vec3 radiance) {
     radiance *= unpackLight(seen.through);
     if ((push.shine.x | push.shine.y) != 0u) radiance += SeenShines(push.shine).at[index].added;
     return toneMap(view.toneMap, view.exposure * radiance);
 }
 
-vec3 colourOf(ViewParameters view, Ray ray, SeenPixel seen, uint index) {
+vec3 colorOf(ViewParameters view, Ray ray, SeenPixel seen, uint index) {
     if (seen.distance == kInfinity) {
         if (view.mode != kViewFinal) return kBackground;
-        return finalColour(view, ray, seen, index, skyRadiance(view, ray.direction));
+        return finalColor(view, ray, seen, index, skyRadiance(view, ray.direction));
     }
     SurfacePart part = partOf(view, Scene(push.scene), seen, ray);
     vec3 indirect = unpackLight(seen.ambient);
@@ -22,13 +22,13 @@ vec3 colourOf(ViewParameters view, Ray ray, SeenPixel seen, uint index) {
         count(kCountWithoutValue, uint(light.tier == kTierNone));
         if (view.mode == kViewIndirect) return toneMap(view.toneMap, view.exposure * light.indirect);
         if (view.mode == kViewTiers)
-            return light.tier == kTierNone ? vec3(1.0, 0.0, 1.0) : tierColour(light.tier) * faceShade(part.normal);
+            return light.tier == kTierNone ? vec3(1.0, 0.0, 1.0) : tierColor(light.tier) * faceShade(part.normal);
         indirect = light.indirect;
     }
 #endif
     vec3 radiance = radianceFrom(view, part, -ray.direction, unpackLight(seen.sun), indirect);
-    if (isGround(seen)) radiance = mix(skyRadiance(view, ray.direction), radiance, groundShare(view, part.position));
-    return finalColour(view, ray, seen, index, radiance);
+    if (isGround(seen)) radiance = mix(skyRadiance(view, ray.direction), radiance, groundFraction(view, part.position));
+    return finalColor(view, ray, seen, index, radiance);
 }
 
 void main() {
@@ -39,7 +39,7 @@ void main() {
 #endif
     if (pixel.inside) {
         SeenPixel seen = SeenPixels(push.seen).at[pixel.index];
-        writeColour(view, pixel.index, colourOf(view, cameraRay(view, pixel.at), seen, pixel.index), seen.distance);
+        writeColor(view, pixel.index, colorOf(view, cameraRay(view, pixel.at), seen, pixel.index), seen.distance);
     }
 #ifdef PFVOX_VIEW_PROBES
     endCounting();

@@ -1,4 +1,4 @@
-// Colours of a scene with probes.
+// Colors of a scene with probes.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_buffer_reference : require

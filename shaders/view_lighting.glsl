@@ -16,7 +16,7 @@ ProbeLight indirectAt(ViewParameters view, SurfacePart part) {
 }
 #endif
 
-// `sun` is the share of it that arrives. Without what mirrors.
+// `sun` is the fraction of it that arrives. Without what mirrors.
 vec3 radianceFrom(ViewParameters view, SurfacePart part, vec3 toViewer, vec3 sun, vec3 indirect) {
     Lobes lobes = lobesOf(part.material, part.albedo, part.normal, toViewer);
     vec3 radiance = part.albedo * part.material.emissionStrength + lobes.diffuse * indirect;
@@ -25,7 +25,7 @@ vec3 radianceFrom(ViewParameters view, SurfacePart part, vec3 toViewer, vec3 sun
     return radiance;
 }
 
-vec3 sunShare(ViewParameters view, Scene scene, SurfacePart part, inout RayCounts counts) {
+vec3 sunFraction(ViewParameters view, Scene scene, SurfacePart part, inout RayCounts counts) {
     if (maxOf(view.sunIrradiance) <= 0.0 || dot(part.normal, -view.sunDirection) <= 0.0) return vec3(0.0);
     Ray ray = Ray(part.start, kInfinity, -view.sunDirection, 0.0);
     return transmittance(scene, ray, counts);

@@ -2,7 +2,7 @@
 // light that such glass scatters. At the end of a ray there is direct sun, indirect light and emission, no further mirror.
 // Rough mirrors scatter their rays from frame to frame; the frames' mean is what they show.
 #include "view_lighting.glsl"
-#include "view_colours.glsl"
+#include "view_colors.glsl"
 
 const float kMirrorAlpha = 1e-3;  // sharper lobes reflect like mirrors
 
@@ -17,8 +17,8 @@ vec3 indirectOf(ViewParameters view, Scene scene, SurfacePart part, uint key, in
 vec3 groundRadiance(ViewParameters view, Scene scene, Ray ray, float distance, inout RayCounts counts) {
     SurfacePart part = partOfGround(view, ray.origin + distance * ray.direction);
     vec3 indirect = ambientRadiance(view, part.normal);
-    vec3 radiance = radianceFrom(view, part, -ray.direction, sunShare(view, scene, part, counts), indirect);
-    return mix(skyRadiance(view, ray.direction), radiance, groundShare(view, part.position));
+    vec3 radiance = radianceFrom(view, part, -ray.direction, sunFraction(view, scene, part, counts), indirect);
+    return mix(skyRadiance(view, ray.direction), radiance, groundFraction(view, part.position));
 }
 
 vec3 radianceAlong(ViewParameters view, Scene scene, Ray ray, uint key, inout RayCounts counts) {
@@ -34,7 +34,7 @@ vec3 radianceAlong(ViewParameters view, Scene scene, Ray ray, uint key, inout Ra
         if (kHasGlass == 0u || !letsThrough(material)) {
             SurfacePart part = partOf(scene, surface);
             if (part.material.type == kMaterialMetal) part.material.type = 0u;  // what it mirrors is about as bright
-            vec3 sun = sunShare(view, scene, part, counts);
+            vec3 sun = sunFraction(view, scene, part, counts);
             vec3 indirect = indirectOf(view, scene, part, key, counts);
             return through * radianceFrom(view, part, -ray.direction, sun, indirect);
         }
@@ -92,7 +92,7 @@ vec3 glassShine(ViewParameters view, Scene scene, Ray ray, SeenShine shine, uvec
         radiance += reflectance * radianceAlong(view, scene, away, joinHash(pixelKey(pixel), 4u), counts);
     }
     if (part.material.transparency < 1.0) {
-        vec3 sun = sunShare(view, scene, part, counts);
+        vec3 sun = sunFraction(view, scene, part, counts);
         vec3 indirect = indirectOf(view, scene, part, joinHash(pixelKey(pixel), 5u), counts);
         radiance += (1.0 - reflectance) * radianceFrom(view, part, -ray.direction, sun, indirect);
     }

@@ -1,8 +1,8 @@
 // Temporal anti-aliasing: frames with different positions within the pixels become one picture (shared/view.glsl.h).
 //
 // While the camera stands still the picture is the mean of all frames. When it moves, the history is fetched from where
-// the point was before, is dropped where another surface was seen there, and is held within the colours around the
-// pixel: mean and deviation of the neighbours (Salvi 2016, "An Excursion in Temporal Supersampling").
+// the point was before, is dropped where another surface was seen there, and is held within the colors around the
+// pixel: mean and deviation of the neighbors (Salvi 2016, "An Excursion in Temporal Supersampling").
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_buffer_reference : require
@@ -21,7 +21,7 @@ layout(push_constant) uniform Push { ResolvePushConstants push; };
 
 const float kFarAway = 1e29;       // of the sky
 const float kSameSurface = 0.04;   // two distances are of one surface when they differ by less than this part
-const float kDeviations = 1.25;    // that the history may be away from the neighbours
+const float kDeviations = 1.25;    // that the history may be away from the neighbors
 
 uint indexOf(ResolveParameters r, ivec2 pixel) {
     ivec2 inside = clamp(pixel, ivec2(0), ivec2(r.width, r.height) - 1);
@@ -64,7 +64,7 @@ vec4 historyAt(ResolveParameters r, vec2 position) {
     return mix(upper, lower, part.y);
 }
 
-vec3 heldNearNeighbours(ResolveParameters r, ivec2 pixel, vec3 colour) {
+vec3 heldNearNeighbors(ResolveParameters r, ivec2 pixel, vec3 color) {
     vec3 sum = vec3(0.0);
     vec3 squares = vec3(0.0);
     for (int y = -1; y <= 1; ++y) {
@@ -76,10 +76,10 @@ vec3 heldNearNeighbours(ResolveParameters r, ivec2 pixel, vec3 colour) {
     }
     vec3 mean = sum / 9.0;
     vec3 reach = kDeviations * sqrt(max(squares / 9.0 - mean * mean, vec3(0.0)));
-    return clamp(colour, mean - reach, mean + reach);
+    return clamp(color, mean - reach, mean + reach);
 }
 
-// Colour and number of frames of what is known from before; 0 frames = nothing.
+// Color and number of frames of what is known from before; 0 frames = nothing.
 vec4 knownBefore(ResolveParameters r, ivec2 pixel, float distance) {
     if (r.hasHistory == 0u) return vec4(0.0);
     if (r.moved == 0u) return Frame(push.lastHistory).at[indexOf(r, pixel)];
@@ -87,7 +87,7 @@ vec4 knownBefore(ResolveParameters r, ivec2 pixel, float distance) {
     vec2 last = lastPosition(r, pixel, distance, expected);
     if (last.x < 0.0 || !sawTheSame(r, ivec2(last), expected)) return vec4(0.0);
     vec4 history = historyAt(r, last);
-    return vec4(heldNearNeighbours(r, pixel, history.rgb), min(history.w, float(r.frameLimit) - 1.0));
+    return vec4(heldNearNeighbors(r, pixel, history.rgb), min(history.w, float(r.frameLimit) - 1.0));
 }
 
 void main() {
@@ -98,7 +98,7 @@ void main() {
     vec4 frame = Frame(push.frame).at[index];
     vec4 before = knownBefore(r, pixel, frame.w);
     float frames = floor(before.w + 0.5) + 1.0;
-    vec3 colour = mix(before.rgb, frame.rgb, 1.0 / frames);
-    if ((push.history.x | push.history.y) != 0u) History(push.history).at[index] = vec4(colour, frames);
-    Pixels(push.pixels).rgba[index] = packUnorm4x8(vec4(srgbFromLinear(clamp(colour, vec3(0.0), vec3(1.0))), 1.0));
+    vec3 color = mix(before.rgb, frame.rgb, 1.0 / frames);
+    if ((push.history.x | push.history.y) != 0u) History(push.history).at[index] = vec4(color, frames);
+    Pixels(push.pixels).rgba[index] = packUnorm4x8(vec4(srgbFromLinear(clamp(color, vec3(0.0), vec3(1.0))), 1.0));
 }

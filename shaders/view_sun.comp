@@ -18,8 +18,8 @@ void main() {
             vec3 position = ray.origin + seen.distance * ray.direction;
             vec3 origin = startOfRays(position, seen.cell);
             RayCounts counts = RayCounts(0u, TraceStatistics(0u, 0u));
-            vec3 share = transmittance(Scene(push.scene), Ray(origin, kInfinity, -view.sunDirection, 0.0), counts);
-            SeenPixels(push.seen).at[pixel.index].sun = packLight(share);
+            vec3 fraction = transmittance(Scene(push.scene), Ray(origin, kInfinity, -view.sunDirection, 0.0), counts);
+            SeenPixels(push.seen).at[pixel.index].sun = packLight(fraction);
             count(counts.trace);
             count(kCountSunRays, counts.rays);
         }

@@ -6,7 +6,7 @@
 
 float largestOf(vec3 c) { return max(c.r, max(c.g, c.b)); }
 
-// Straight up to 0.7, then a shoulder that reaches 1 at infinity: colours of the source stay what they are. The curve is
+// Straight up to 0.7, then a shoulder that reaches 1 at infinity: colors of the source stay what they are. The curve is
 // that of the strongest channel, so that a lamp keeps its hue; only what is far too bright turns towards white.
 vec3 standardToneMap(vec3 c) {
     const float knee = 0.7;

@@ -47,7 +47,7 @@ class Canvas {
     /// Every voxel of the box for which `inside` holds.
     void fillWhere(Box box, const std::function<bool(glm::ivec3)>& inside, const Brush& brush);
 
-    /// Solids around a centre. Centres and radii count half voxels, so that even sizes can be symmetric:
+    /// Solids around a center. Centers and radii count half voxels, so that even sizes can be symmetric:
     /// voxel p has its middle at 2p + 1.
     void ball(glm::ivec3 centerHalf, int radiusHalf, const Brush& brush);
     /// Upright, from zMin up to, not including, zMax; the radius changes evenly from bottom to top.

@@ -77,7 +77,7 @@ void cutFront(Canvas& canvas, const DemoPalette& p) {
     }
 }
 
-/// A round window of coloured glass in the back wall.
+/// A round window of colored glass in the back wall.
 void cutRose(Canvas& canvas, const DemoPalette& p) {
     const glm::ivec2 middleHalf{kSize.x, 48};
     const auto squared = [&](glm::ivec3 v) {

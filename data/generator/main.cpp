@@ -1,5 +1,5 @@
-// pfvox-make-demo-data: writes the demo sources of data/, or those of examples/game-assets. The outputs are committed; a
-// test runs this program and compares.
+// pfvox-make-demo-data: writes the demo sources of data/, or those of examples/game-assets. The outputs are
+// committed; a test runs this program and compares.
 
 #include <cstdio>
 #include <exception>

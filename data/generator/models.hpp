@@ -27,7 +27,8 @@ Canvas makeStairs(const DemoPalette& p);
 Canvas makeTower(const DemoPalette& p);
 Canvas makeHouse(const DemoPalette& p);
 
-/// A floor between three walls, one red and one green with a window (example_terrace.cpp): examples/game-assets
+/// A floor between three walls, one red and one green with a window (example_terrace.cpp):
+/// examples/game-assets
 Canvas makeTerrace(const DemoPalette& p);
 
 /// Courses of cut stone with joints: 8 voxels long, 4 high.

@@ -1,4 +1,4 @@
-// Palette: the colours and materials that all demo models share.
+// Palette: the colors and materials that all demo models share.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ struct Color {
     std::uint8_t b = 0;
 };
 
-/// Neighbouring palette entries: the shades of one thing, from dark to light.
+/// Neighboring palette entries: the shades of one thing, from dark to light.
 struct Ramp {
     int first = 1;
     int count = 1;
@@ -39,7 +39,7 @@ class Palette {
     /// Gives every shade of a ramp the same MATL entries.
     void setMaterial(Ramp ramp, const MaterialText& attributes);
 
-    /// Colour of a voxel value; the unused ones are black.
+    /// Color of a voxel value; the unused ones are black.
     Color color(int index) const { return colors_[static_cast<std::size_t>(index - 1)]; }
     const std::map<int, MaterialText>& materials() const { return materials_; }
 

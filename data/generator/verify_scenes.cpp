@@ -4,7 +4,9 @@ namespace pfvox::demo {
 
 namespace {
 
-void put(Canvas& canvas, glm::ivec3 low, glm::ivec3 high, const Brush& brush) { canvas.box({low, high}, brush); }
+void put(Canvas& canvas, glm::ivec3 low, glm::ivec3 high, const Brush& brush) {
+    canvas.box({low, high}, brush);
+}
 
 void putTable(Canvas& canvas, glm::ivec3 corner, glm::ivec2 size, const DemoPalette& p) {
     const Brush legs = p.wood.grain(101);
@@ -19,7 +21,8 @@ void putShelf(Canvas& canvas, glm::ivec3 corner, const DemoPalette& p) {
     put(canvas, corner, corner + glm::ivec3{4, 18, 20}, p.wood.grain(103));
     for (const int z : {2, 8, 14}) {
         put(canvas, corner + glm::ivec3{0, 1, z}, corner + glm::ivec3{3, 17, z + 4}, empty);
-        put(canvas, corner + glm::ivec3{1, 2, z}, corner + glm::ivec3{3, 9 + z / 2, z + 3}, p.carpet.grain(104));
+        put(canvas, corner + glm::ivec3{1, 2, z}, corner + glm::ivec3{3, 9 + z / 2, z + 3},
+            p.carpet.grain(104));
     }
 }
 
@@ -45,13 +48,13 @@ Canvas makeInterior(const DemoPalette& p) {
     const Brush plaster = p.plaster.patches(9, 111);
     canvas.box(canvas.all(), plaster);
     put(canvas, {2, 2, 0}, {126, 94, 2}, p.plank.patches(7, 112));
-    put(canvas, {2, 2, 2}, {62, 46, 32}, empty);     // living room: sun
-    put(canvas, {2, 48, 2}, {62, 94, 32}, empty);    // store: light through its door only
-    put(canvas, {64, 2, 2}, {126, 94, 32}, empty);   // hall: windows to the other side, a lamp
-    put(canvas, {62, 18, 2}, {64, 28, 24}, empty);   // doors
+    put(canvas, {2, 2, 2}, {62, 46, 32}, empty);    // living room: sun
+    put(canvas, {2, 48, 2}, {62, 94, 32}, empty);   // store: light through its door only
+    put(canvas, {64, 2, 2}, {126, 94, 32}, empty);  // hall: windows to the other side, a lamp
+    put(canvas, {62, 18, 2}, {64, 28, 24}, empty);  // doors
     put(canvas, {62, 66, 2}, {64, 76, 24}, empty);
     put(canvas, {22, 46, 2}, {32, 48, 24}, empty);
-    put(canvas, {14, 0, 12}, {28, 2, 27}, empty);    // windows
+    put(canvas, {14, 0, 12}, {28, 2, 27}, empty);  // windows
     put(canvas, {38, 0, 12}, {52, 2, 27}, empty);
     put(canvas, {126, 40, 12}, {128, 62, 27}, empty);
     put(canvas, {2, 2, 2}, {3, 46, 32}, p.redPaint.grain(113));
@@ -90,8 +93,8 @@ Canvas makeFoundry(const DemoPalette& p) {
     put(canvas, {2, 58, 30}, {126, 64, 34}, p.bronze.patches(6, 126));  // a gallery across the hall
     put(canvas, {8, 100, 2}, {26, 118, 14}, p.gold.grain(127));
     put(canvas, {104, 104, 2}, {118, 118, 10}, p.terracotta.patches(5, 128));
-    put(canvas, {70, 10, 2}, {71, 40, 22}, p.steel.grain(0));           // a screen of steel
-    put(canvas, {100, 40, 44}, {116, 80, 48}, empty);                   // a skylight
+    put(canvas, {70, 10, 2}, {71, 40, 22}, p.steel.grain(0));  // a screen of steel
+    put(canvas, {100, 40, 44}, {116, 80, 48}, empty);          // a skylight
     return canvas;
 }
 

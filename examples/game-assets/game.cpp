@@ -32,7 +32,8 @@ int main(int argc, char** argv) {
     }
     pfvox::DiagnosticList diagnostics;
     const auto loaded = loadLevel(argv[1], diagnostics);
-    for (const pfvox::Diagnostic& entry : diagnostics.entries()) std::fprintf(stderr, "%s\n", entry.message.c_str());
+    for (const pfvox::Diagnostic& entry : diagnostics.entries())
+        std::fprintf(stderr, "%s\n", entry.message.c_str());
     if (loaded) return 0;
     std::fprintf(stderr, "game: %s\n", describe(loaded.error()).c_str());
     return 1;

@@ -1,5 +1,5 @@
-// walk-octree <file.pf_vox>: loads an asset and walks its octrees: nodes and leaves on each level, and the voxels of
-// each material. pfvox/octree.hpp tells what the words mean.
+// walk-octree <file.pf_vox>: loads an asset and walks its octrees: nodes and leaves on each level, and the
+// voxels of each material. pfvox/octree.hpp tells what the words mean.
 #include <pfvox/pf_vox.hpp>
 
 #include <bit>
@@ -14,13 +14,15 @@ struct Level {
 };
 
 /// Visits node `index` and what is below it. Leaves of the last level are single voxels.
-void walk(const pfvox::NodeTree& tree, std::uint32_t index, std::uint32_t level, std::map<std::uint32_t, Level>& levels) {
+void walk(const pfvox::NodeTree& tree, std::uint32_t index, std::uint32_t level,
+          std::map<std::uint32_t, Level>& levels) {
     const std::uint32_t descriptor = tree.nodes[index];
     const std::uint32_t inner = pfvox::node::innerMask(descriptor);
     levels[level].nodes += 1;
     levels[level + 1].leaves += static_cast<std::uint64_t>(std::popcount(pfvox::node::leafMask(descriptor)));
     if (inner == 0) return;
-    const std::uint32_t first = tree.firstChild(index);  // inner children lie side by side, leaves have no node
+    const std::uint32_t first =
+        tree.firstChild(index);  // inner children lie side by side, leaves have no node
     for (std::uint32_t child = 0; child < static_cast<std::uint32_t>(std::popcount(inner)); ++child)
         walk(tree, first + child, level + 1, levels);
 }
@@ -34,8 +36,8 @@ void printModel(const pfvox::OctreeAsset& asset, const pfvox::OctreeModel& model
     }
     for (const auto& [level, count] : levels) {
         std::printf("  level %2u: %8llu nodes %8llu leaves of edge %u\n", level,
-                    static_cast<unsigned long long>(count.nodes), static_cast<unsigned long long>(count.leaves),
-                    1u << (model.depth - level));
+                    static_cast<unsigned long long>(count.nodes),
+                    static_cast<unsigned long long>(count.leaves), 1u << (model.depth - level));
     }
     const pfvox::OctreeStatistics sums = pfvox::statistics(model, asset.materials.size());
     for (std::size_t i = 0; i < asset.materials.size(); ++i) {

@@ -7,7 +7,8 @@ namespace pfvox {
 
 namespace {
 
-/// A pool of a small model costs no more than its arrays would; one of a large model soon takes whole huge pages.
+/// A pool of a small model costs no more than its arrays would; one of a large model soon takes whole huge
+/// pages.
 constexpr std::size_t kSmallestBlock = std::size_t{64} << 10;
 constexpr std::size_t kLargestGrowth = std::size_t{8} << 20;
 

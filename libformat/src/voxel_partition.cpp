@@ -76,7 +76,7 @@ class SliceSorter {
             sort(slice.subspan(half), origin, out + half, pieces);
             return;
         }
-        // Neighbours in a list mostly go to the same region, and a counter that was just written is slow to
+        // Neighbors in a list mostly go to the same region, and a counter that was just written is slow to
         // read again: so both halves of the slice are worked on in turns, with counters of their own.
         const std::size_t count = slice.size();
         std::uint16_t* const regions = regions_.data();

@@ -97,7 +97,7 @@ PFVOX_SIZE(TileStatistics, 16);
 // Path i is sample (i / 64) % 16 of texel i % 64 of the tile and batch of item i / 1024.
 PFVOX_STRUCT(PathState) {
     vec3 origin;      // of its ray
-    float density;    // of the ray's direction, per steradian; < 0: no emitter sampling could have found it
+    float pdf;    // of the ray's direction, per steradian; < 0: no emitter sampling could have found it
     vec3 direction;
     float travelled;  // metres since the last vertex that scattered
     vec3 throughput;
@@ -149,7 +149,7 @@ PFVOX_STRUCT(WaveControl) {
     uint launch[12];    // four by queue: workgroups along x, y, z of a launch that covers it
     uint raysLow;       // cast since the bake began
     uint raysHigh;
-    uint cappedRays;    // given up by the traversal
+    uint stepLimitRays;    // given up by the traversal
     uint reserved;
 };
 PFVOX_SIZE(WaveControl, 96);
@@ -160,8 +160,8 @@ PFVOX_OFFSET(WaveControl, raysLow, 80);
 PFVOX_STRUCT(BakeWave) {
     uvec2 scene;        // BakeScene
     uvec2 probes;       // BakeProbe[] of the group
-    uvec2 texels;       // SeenTexel[depthEdge^2] of each probe
-    uvec2 sums;         // vec4[lightEdge^2] of each probe: radiance of its paths; w: Welford's sum of squares of its batches
+    uvec2 texels;       // SeenTexel[depthResolution^2] of each probe
+    uvec2 sums;         // vec4[lightResolution^2] of each probe: radiance of its paths; w: Welford's sum of squares of its batches
     uvec2 tiles;        // TileStatistics[] of each probe
     uvec2 items;        // uvec2[]: tile of the group, batch
     uvec2 runs;         // GatherRun[]
@@ -172,13 +172,13 @@ PFVOX_STRUCT(BakeWave) {
     uvec2 shadowRays[2];  // ShadowRay[]: to the sun, to emitters
     uvec2 control;      // WaveControl
     uvec2 maps;         // by probe, see bake_finish.comp
-    uint depthEdge;
-    uint lightEdge;
+    uint depthResolution;
+    uint lightResolution;
     float depthScale;   // of DepthCoder
     float depthLogRange;
 };
 PFVOX_SIZE(BakeWave, 144);
-PFVOX_OFFSET(BakeWave, depthEdge, 128);
+PFVOX_OFFSET(BakeWave, depthResolution, 128);
 
 PFVOX_STRUCT(WavePush) {
     uvec2 wave;   // BakeWave

@@ -43,7 +43,7 @@ PFVOX_OFFSET(BenchParameters, eye, 48);
 PFVOX_STRUCT(BenchCounters) {
     uint next;   // persistent: the first ray that nobody has taken
     uint hits;
-    uint capped;
+    uint stepLimitReached;
     uint reserved0;
     uint steps;
     uint rays;   // casts, bounces counted one by one

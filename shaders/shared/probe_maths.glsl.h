@@ -3,8 +3,8 @@
 // bits are stored; what is left to the driver is log, exp and rounding of sums, so that codes of two devices may differ
 // by one.
 //
-// Octahedral map: +z in the middle, texture coordinate = (o + 1) / 2, o in [-1, 1]^2; centre of texel (i, j) =
-// ((i, j) + 0.5) / edge. Distances in metres.
+// Octahedral map: +z in the middle, texture coordinate = (o + 1) / 2, o in [-1, 1]^2; center of texel (i, j) =
+// ((i, j) + 0.5) / resolution. Distances in metres.
 #ifndef PFVOX_SHARED_PROBE_MATHS_GLSL_H
 #define PFVOX_SHARED_PROBE_MATHS_GLSL_H
 
@@ -36,7 +36,7 @@ using glm::uintBitsToFloat;
 PFVOX_CONSTANT(uint, kDepthMiss, 65535u);     // the texel sees no surface
 PFVOX_CONSTANT(uint, kMaxDepthCode, 65534u);  // Far, and all beyond
 PFVOX_CONSTANT(uint, kMinDepthBlock, 16u);    // texels of a min map stand for so many squared
-PFVOX_CONSTANT(float, kTexelRadiansOfEdge1, 4.5573f);  // of a typical wide texel, times S: 0.255 degrees at 1024
+PFVOX_CONSTANT(float, kTexelRadiansOfResolution1, 4.5573f);  // of a typical wide texel, times S: 0.255 degrees at 1024
 PFVOX_CONSTANT(float, kSurfaceSlackMetres, 0.01f);
 PFVOX_CONSTANT(float, kSurfaceSlackTexels, 0.75f);
 PFVOX_CONSTANT(float, kSurfaceMinCosine, 0.05f);
@@ -68,38 +68,38 @@ PFVOX_FUNCTION vec3 octUnfold(vec2 o) {
 // [-1, 1]^2 -> unit direction.
 PFVOX_FUNCTION vec3 octDecode(vec2 o) { return normalize(octUnfold(o)); }
 
-PFVOX_FUNCTION vec2 octOfTexel(uint x, uint y, uint edge) {
-    float texel = 2.0f / float(edge);
+PFVOX_FUNCTION vec2 octOfTexel(uint x, uint y, uint resolution) {
+    float texel = 2.0f / float(resolution);
     return vec2((float(x) + 0.5f) * texel - 1.0f, (float(y) + 0.5f) * texel - 1.0f);
 }
 
-// Unit direction of a texel's centre.
-PFVOX_FUNCTION vec3 directionOfTexel(uint x, uint y, uint edge) { return octDecode(octOfTexel(x, y, edge)); }
+// Unit direction of a texel's center.
+PFVOX_FUNCTION vec3 directionOfTexel(uint x, uint y, uint resolution) { return octDecode(octOfTexel(x, y, resolution)); }
 
 // The texel coordinate, in texels, of a direction: its whole part is the texel that it falls into.
-PFVOX_FUNCTION vec2 texelCoordinate(vec3 direction, uint edge) {
+PFVOX_FUNCTION vec2 texelCoordinate(vec3 direction, uint resolution) {
     vec2 o = octEncode(direction);
-    return vec2((o.x * 0.5f + 0.5f) * float(edge), (o.y * 0.5f + 0.5f) * float(edge));
+    return vec2((o.x * 0.5f + 0.5f) * float(resolution), (o.y * 0.5f + 0.5f) * float(resolution));
 }
 
 // Word index of the texel that a direction falls into.
-PFVOX_FUNCTION uint texelIndex(vec3 direction, uint edge) {
-    vec2 t = texelCoordinate(direction, edge);
-    uint last = edge - 1u;
-    return min(uint(max(t.x, 0.0f)), last) + edge * min(uint(max(t.y, 0.0f)), last);
+PFVOX_FUNCTION uint texelIndex(vec3 direction, uint resolution) {
+    vec2 t = texelCoordinate(direction, resolution);
+    uint last = resolution - 1u;
+    return min(uint(max(t.x, 0.0f)), last) + resolution * min(uint(max(t.y, 0.0f)), last);
 }
 
 // Steradians: area on the octahedron's net over the cube of the distance to the octahedron.
-PFVOX_FUNCTION float texelSolidAngle(uint x, uint y, uint edge) {
-    vec3 p = octUnfold(octOfTexel(x, y, edge));
+PFVOX_FUNCTION float texelSolidAngle(uint x, uint y, uint resolution) {
+    vec3 p = octUnfold(octOfTexel(x, y, resolution));
     float squared = dot(p, p);
-    float texel = 2.0f / float(edge);
+    float texel = 2.0f / float(resolution);
     return texel * texel / (squared * sqrt(squared));
 }
 
 // The angle of a texel, radians, as the surface test means it: it was tuned with this figure. The widest texel, in the
-// middle of an octant, has 2 sqrt(6) / edge, 7 % more; the narrowest, at an axis, 2 / edge.
-PFVOX_FUNCTION float texelAngle(uint edge) { return kTexelRadiansOfEdge1 / float(edge); }
+// middle of an octant, has 2 sqrt(6) / resolution, 7 % more; the narrowest, at an axis, 2 / resolution.
+PFVOX_FUNCTION float texelAngle(uint resolution) { return kTexelRadiansOfResolution1 / float(resolution); }
 
 // ---- Border of one texel around maps that are read bilinearly ----
 
@@ -221,18 +221,18 @@ PFVOX_FUNCTION vec3 proximityCoordinate(vec3 position, vec3 normal, vec3 start, 
 // ---- Does a texel see a surface point? ----
 
 // How far the stored and the true distance may differ, metres, for a surface that the texel meets at this cosine.
-PFVOX_FUNCTION float surfaceTolerance(float distance, float cosine, uint edge) {
-    return kSurfaceSlackMetres + kSurfaceSlackTexels * texelAngle(edge) * distance / max(abs(cosine), kSurfaceMinCosine);
+PFVOX_FUNCTION float surfaceTolerance(float distance, float cosine, uint resolution) {
+    return kSurfaceSlackMetres + kSurfaceSlackTexels * texelAngle(resolution) * distance / max(abs(cosine), kSurfaceMinCosine);
 }
 
-// `word`: of the texel of a depth map of this edge that the point falls into; `toPoint`: probe -> point, metres, not 0;
+// `word`: of the texel of a depth map of this resolution that the point falls into; `toPoint`: probe -> point, metres, not 0;
 // `normal`: of the surface, unit. Of active probes.
-PFVOX_FUNCTION bool seesSurface(uint word, vec3 toPoint, vec3 normal, uint edge, vec2 depthScaleAndLogRange) {
+PFVOX_FUNCTION bool seesSurface(uint word, vec3 toPoint, vec3 normal, uint resolution, vec2 depthScaleAndLogRange) {
     if (isMiss(word)) return false;
     if (dot(normalOf(word), normal) <= kSurfaceMinNormalDot) return false;
     float distance = sqrt(dot(toPoint, toPoint));
     float stored = depthOfCode(depthCodeOf(word), depthScaleAndLogRange.x, depthScaleAndLogRange.y);
-    return abs(stored - distance) < surfaceTolerance(distance, dot(toPoint, normal) / distance, edge);
+    return abs(stored - distance) < surfaceTolerance(distance, dot(toPoint, normal) / distance, resolution);
 }
 
 PFVOX_SHARED_END

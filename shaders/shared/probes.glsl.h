@@ -33,13 +33,13 @@ PFVOX_OFFSET(ProbeEntry, nearestActive, 56);
 
 PFVOX_STRUCT(ProbeFieldRecord) {
     vec3 start;  // grid point of probe 0
-    uint depthEdge;
+    uint depthResolution;
     vec3 step;
-    uint lightEdge;
+    uint lightResolution;
     ivec3 counts;
-    uint irradianceEdge;  // interior
+    uint irradianceResolution;  // interior
     vec3 cellStart;       // proximity grid
-    uint momentsEdge;     // interior
+    uint momentsResolution;     // interior
     vec3 cellStep;
     float momentRange;
     ivec3 cellCounts;     // 0 = no proximity grid

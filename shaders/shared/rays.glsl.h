@@ -26,7 +26,7 @@ PFVOX_STRUCT(HitRecord) {
     uint material;  // of the scene
     uint face;      // in the model; kFaceInside when the ray starts in the voxel
     uint steps;     // iterations of the octree loop, all instances
-    uint capped;    // 1: an instance was given up after kMaxTraceSteps
+    uint stepLimitReached;    // 1: an instance was given up after kMaxTraceSteps
     uint lodColor;  // of a level of detail: R, G, B (sRGB), coverage; else 0
     int cellLog2;   // edge of the cell that was hit = 2^cellLog2 voxels
     uint reserved0;

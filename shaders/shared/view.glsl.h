@@ -1,8 +1,8 @@
 // What a picture is made from: read by the view_*.comp programs, written by the viewer.
 //
-//     light:       geometry -> SeenPixel -> sun -> ambient -> reflections -> light -> colour, once for each sample of a pixel
-//     inspection:  scene, field or atlas -> colour
-//     then         colours -> resolve -> pixels
+//     light:       geometry -> SeenPixel -> sun -> ambient -> reflections -> light -> color, once for each sample of a pixel
+//     inspection:  scene, field or atlas -> color
+//     then         colors -> resolve -> pixels
 #ifndef PFVOX_SHARED_VIEW_GLSL_H
 #define PFVOX_SHARED_VIEW_GLSL_H
 
@@ -83,8 +83,8 @@ PFVOX_STRUCT(SeenPixel) {
     uint normal;     // octahedral, two snorm16
     uint lodColor;   // sRGB of a level of detail; 0 = the material's
     uint cell;       // of what was hit, a voxel or a level of detail: see packCell
-    uint sun;        // share of the sun that arrives, R11G11B10F
-    uint through;    // share that glass in front lets through, R11G11B10F
+    uint sun;        // fraction of the sun that arrives, R11G11B10F
+    uint through;    // fraction that glass in front lets through, R11G11B10F
     uint ambient;    // I as rays guess it, R11G11B10F; where probes do not say it
 };
 PFVOX_SIZE(SeenPixel, 32);
@@ -103,7 +103,7 @@ PFVOX_SIZE(SeenShine, 32);
 // Sums over all samples of all frames, 64 bits each: low word first.
 PFVOX_CONSTANT(uint, kCountHits, 0u);        // camera rays that met a voxel
 PFVOX_CONSTANT(uint, kCountSteps, 1u);
-PFVOX_CONSTANT(uint, kCountCapped, 2u);
+PFVOX_CONSTANT(uint, kCountStepLimit, 2u);
 PFVOX_CONSTANT(uint, kCountSunRays, 3u);
 PFVOX_CONSTANT(uint, kCountReflectionRays, 4u);
 PFVOX_CONSTANT(uint, kCountWithoutValue, 5u);  // lookups without a tier, or not finite
@@ -116,7 +116,7 @@ PFVOX_CONSTANT(uint, kViewCounterCount, 16u);
 PFVOX_STRUCT(ViewPushConstants) {
     uvec2 scene;
     uvec2 parameters;
-    uvec2 colours;   // vec4 each: display colour before the encoding, distance; mean of the samples so far
+    uvec2 colors;   // vec4 each: display color before the encoding, distance; mean of the samples so far
     uvec2 counters;  // uvec2[kViewCounterCount]
     uvec2 seen;      // SeenPixel each
     uvec2 shine;     // SeenShine each; 0 = the scene needs none
@@ -151,9 +151,9 @@ PFVOX_OFFSET(ResolveParameters, lastPosition, 64);
 
 PFVOX_STRUCT(ResolvePushConstants) {
     uvec2 parameters;
-    uvec2 frame;        // vec4 each: colour, distance
+    uvec2 frame;        // vec4 each: color, distance
     uvec2 lastFrame;
-    uvec2 history;      // vec4 each: colour, number of frames in it; written unless 0
+    uvec2 history;      // vec4 each: color, number of frames in it; written unless 0
     uvec2 lastHistory;
     uvec2 pixels;       // one RGBA8 word each; written
 };

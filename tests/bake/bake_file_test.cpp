@@ -46,7 +46,8 @@ class BakeFileTest : public BakeTest {
     }
     BakeReport bake(const BakeSettings& settings, const std::string& name) {
         BakeObserver observer;
-        const Result<BakeReport> report = bakeProbes(device(), scene, settings, folder / name, observer, diagnostics);
+        const Result<BakeReport> report =
+            bakeProbes(device(), scene, settings, folder / name, observer, diagnostics);
         EXPECT_TRUE(report) << describe(report.error());
         return report.value_or(BakeReport{});
     }
@@ -65,7 +66,7 @@ TEST_F(BakeFileTest, MakesAFileWithAllLayers) {
     EXPECT_EQ(report.counts.active + report.counts.inactive, 8u);
     EXPECT_GT(report.counts.active, 4u);
     EXPECT_GT(report.light.rays, 10000u);
-    EXPECT_EQ(report.cappedRays, 0u);
+    EXPECT_EQ(report.stepLimitRays, 0u);
     EXPECT_GE(report.meanSamples.value(), 32.0);
     EXPECT_GT(report.proximity.surfaceCells, 0u);
     EXPECT_EQ(report.fileBytes, bytesOf("a.pf_probe").size());
@@ -103,7 +104,8 @@ TEST_F(BakeFileTest, ThePieceSizeOfDispatchesChangesNothing) {
 
 TEST_F(BakeFileTest, ShardsMergeToTheWhole) {
     bake(small(), "whole.pf_probe");
-    PFVOX_ASSERT_VALUE(const ProbeField, whole, loadPfProbe(folder / "whole.pf_probe", Limits{}, diagnostics));
+    PFVOX_ASSERT_VALUE(const ProbeField, whole,
+                       loadPfProbe(folder / "whole.pf_probe", Limits{}, diagnostics));
     for (const std::uint32_t shards : {1u, 2u, 4u}) {
         std::vector<std::filesystem::path> files;
         for (std::uint32_t i = 0; i < shards; ++i) {
@@ -113,9 +115,11 @@ TEST_F(BakeFileTest, ShardsMergeToTheWhole) {
             bake(settings, name);
             files.push_back(folder / name);
         }
-        const auto merged = mergeProbeFields(files, folder / "merged.pf_probe", {.proximity = whole.proximity}, Limits{}, diagnostics);
+        const auto merged = mergeProbeFields(files, folder / "merged.pf_probe",
+                                             {.proximity = whole.proximity}, Limits{}, diagnostics);
         ASSERT_TRUE(merged) << describe(merged.error());
-        PFVOX_ASSERT_VALUE(const ProbeField, field, loadPfProbe(folder / "merged.pf_probe", Limits{}, diagnostics));
+        PFVOX_ASSERT_VALUE(const ProbeField, field,
+                           loadPfProbe(folder / "merged.pf_probe", Limits{}, diagnostics));
         EXPECT_EQ(field, whole) << shards;
     }
 }
@@ -123,7 +127,8 @@ TEST_F(BakeFileTest, ShardsMergeToTheWhole) {
 TEST_F(BakeFileTest, AStoppedBakeIsResumed) {
     bake(small(), "whole.pf_probe");
     StopAfter observer(3);
-    const auto stopped = bakeProbes(device(), scene, small(), folder / "part.pf_probe", observer, diagnostics);
+    const auto stopped =
+        bakeProbes(device(), scene, small(), folder / "part.pf_probe", observer, diagnostics);
     ASSERT_FALSE(stopped);
     EXPECT_EQ(stopped.error().code, ErrorCode::Cancelled);
     EXPECT_TRUE(std::filesystem::exists(probeJournalPath(folder / "part.pf_probe")));
@@ -169,7 +174,7 @@ TEST_F(BakeFileTest, CompactFilesHaveTheSmallLayersOnly) {
 }
 
 TEST_F(BakeFileTest, AFurnaceFillsTheIrradianceMap) {
-    scene = sceneOf(assetOf(hollowBox(glm::ivec3(10)), {grey(188, 0.5)}));
+    scene = sceneOf(assetOf(hollowBox(glm::ivec3(10)), {gray(188, 0.5)}));
     scene.probes.step = glm::vec3(0.4f);
     bake(plain(16, 128), "a.pf_probe");
     PFVOX_ASSERT_VALUE(const ProbeField, field, loadPfProbe(folder / "a.pf_probe", Limits{}, diagnostics));
@@ -193,7 +198,8 @@ TEST_F(BakeFileTest, SettingsOutOfRangeAreNamed) {
         BakeSettings settings = small();
         change(settings);
         BakeObserver observer;
-        const auto report = bakeProbes(device(), scene, settings, folder / "x.pf_probe", observer, diagnostics);
+        const auto report =
+            bakeProbes(device(), scene, settings, folder / "x.pf_probe", observer, diagnostics);
         return report ? ErrorCode::Internal : report.error().code;
     };
     EXPECT_EQ(refused([](BakeSettings& s) { s.minSamples = 20; }), ErrorCode::BadValue);

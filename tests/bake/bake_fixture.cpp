@@ -13,7 +13,7 @@ double linearOf(std::uint8_t byte) {
     return shared::linearFromSrgb(byte / 255.0);
 }
 
-Material grey(std::uint8_t byte, double radiance) {
+Material gray(std::uint8_t byte, double radiance) {
     return material(byte, byte, byte, radiance > 0.0 ? static_cast<float>(radiance / linearOf(byte)) : 0.0f);
 }
 
@@ -26,7 +26,8 @@ LoadedScene sceneOf(VoxelAsset asset, const Affine& worldFromAsset) {
     scene.bounds = boundsOf(*built, worldFromAsset);
     scene.parts.push_back({.asset = built, .worldFromAsset = worldFromAsset, .model = 0});
     const glm::vec3 middle(0.5 * (scene.bounds.min + scene.bounds.max));
-    scene.probes = {.start = middle, .step = glm::vec3(scene.bounds.max - scene.bounds.min), .counts = glm::uvec3(1)};
+    scene.probes = {
+        .start = middle, .step = glm::vec3(scene.bounds.max - scene.bounds.min), .counts = glm::uvec3(1)};
     return scene;
 }
 
@@ -42,7 +43,8 @@ VoxelAsset assetOf(VoxelModel model, std::vector<Material> materials, double vox
 VoxelModel hollowBox(const glm::ivec3& inner, int wall) {
     VoxelModel model;
     fillBox(model, {glm::ivec3(-wall), inner + wall}, [&](glm::ivec3 p) -> std::optional<MaterialIndex> {
-        const bool inside = glm::all(glm::greaterThanEqual(p, glm::ivec3(0))) && glm::all(glm::lessThan(p, inner));
+        const bool inside =
+            glm::all(glm::greaterThanEqual(p, glm::ivec3(0))) && glm::all(glm::lessThan(p, inner));
         return inside ? std::nullopt : std::optional<MaterialIndex>(MaterialIndex{0});
     });
     return model;
@@ -57,7 +59,8 @@ BakeSettings BakeTest::plain(std::uint32_t edge, std::uint32_t samples) {
     return settings;
 }
 
-LitProbe BakeTest::lightAt(const LoadedScene& scene, const glm::vec3& position, const BakeSettings& settings) {
+LitProbe BakeTest::lightAt(const LoadedScene& scene, const glm::vec3& position,
+                           const BakeSettings& settings) {
     LitProbe probe;
     const auto lit = [&]() -> Result<void> {
         DiagnosticList unused;
@@ -84,8 +87,8 @@ LitProbe BakeTest::lightAt(const LoadedScene& scene, const glm::vec3& position, 
         PFVOX_CHECK(tracer.light(count));
         PFVOX_TRY(auto, seen, tracer.seenTexels(0));
         PFVOX_TRY(bake::TracedProbe, traced, tracer.collect(0));
-        PFVOX_TRY(const std::uint64_t, capped, tracer.cappedRays());
-        EXPECT_EQ(capped, 0u);
+        PFVOX_TRY(const std::uint64_t, stepLimitRays, tracer.stepLimitRays());
+        EXPECT_EQ(stepLimitRays, 0u);
         for (const shared::SeenTexel& texel : seen)
             probe.normals.push_back(shared::octDecode(glm::unpackSnorm2x16(texel.normal)));
         probe.seen = std::move(seen);

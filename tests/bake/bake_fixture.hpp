@@ -13,7 +13,7 @@ namespace pfvox::test {
 /// sRGB bytes and their linear value.
 double linearOf(std::uint8_t byte);
 /// A Lambert material; with `radiance` it emits that, in every channel.
-Material grey(std::uint8_t byte, double radiance = 0.0);
+Material gray(std::uint8_t byte, double radiance = 0.0);
 
 /// One model of 1 voxel = `voxelMetres`, no sun, black sky, one probe in the middle of its box.
 LoadedScene sceneOf(VoxelAsset asset, const Affine& worldFromAsset = identityAffine());
@@ -25,9 +25,9 @@ VoxelModel hollowBox(const glm::ivec3& inner, int wall = 1);
 /// What one probe gave.
 struct LitProbe {
     std::vector<shared::SeenTexel> seen;
-    std::vector<glm::vec3> normals;   ///< of `seen`, unit length
-    std::vector<glm::vec3> light;     ///< at the same edge as `seen`
-    std::vector<double> errors;       ///< standard error of each texel's mean channel
+    std::vector<glm::vec3> normals;  ///< of `seen`, unit length
+    std::vector<glm::vec3> light;    ///< at the same edge as `seen`
+    std::vector<double> errors;      ///< standard error of each texel's mean channel
     double meanError = 0.0;
     std::uint64_t rays = 0;
 };
@@ -36,7 +36,8 @@ class BakeTest : public GpuTest {
   protected:
     /// `edge` texels of depth and light, `samples` paths each, not adaptive.
     static BakeSettings plain(std::uint32_t edge, std::uint32_t samples);
-    static LitProbe lightAt(const LoadedScene& scene, const glm::vec3& position, const BakeSettings& settings);
+    static LitProbe lightAt(const LoadedScene& scene, const glm::vec3& position,
+                            const BakeSettings& settings);
 
     DiagnosticList diagnostics;
 };

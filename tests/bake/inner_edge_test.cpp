@@ -17,7 +17,7 @@ LoadedScene edgeScene(const Affine& world = identityAffine()) {
     fillBox(model, {glm::ivec3(-1), {16, 16, 40}}, [](glm::ivec3 p) -> std::optional<MaterialIndex> {
         return p.x < 0 || p.y < 0 ? std::optional<MaterialIndex>(MaterialIndex{0}) : std::nullopt;
     });
-    LoadedScene scene = sceneOf(assetOf(std::move(model), {grey(0)}), world);
+    LoadedScene scene = sceneOf(assetOf(std::move(model), {gray(0)}), world);
     scene.scene.sky = {.zenith = glm::dvec3(1.0), .horizon = glm::dvec3(1.0), .ground = glm::dvec3(1.0)};
     return scene;
 }

@@ -59,9 +59,9 @@ struct RoomMap {
                                     const std::vector<float>& errors) const {
         return filter::filterLight({.words = words,
                                     .metres = metres,
-                                    .depthEdge = edges.depth,
+                                    .depthResolution = edges.depth,
                                     .light = light,
-                                    .lightEdge = edges.light,
+                                    .lightResolution = edges.light,
                                     .errors = errors,
                                     .voxelMetres = BoxRoom::kVoxelMetres},
                                    {});
@@ -190,9 +190,13 @@ TEST(LightFilter, TexelsWithoutSurfaceStay) {
     std::vector<std::uint32_t> words(16 * 16, kDepthMissCode);
     std::vector<float> metres(words.size(), -1.0f);
     const std::vector<glm::vec3> light(words.size(), glm::vec3{0.0f});
-    const auto result = filter::filterLight(
-        {.words = words, .metres = metres, .depthEdge = 16, .light = light, .lightEdge = 16, .errors = {}},
-        {});
+    const auto result = filter::filterLight({.words = words,
+                                             .metres = metres,
+                                             .depthResolution = 16,
+                                             .light = light,
+                                             .lightResolution = 16,
+                                             .errors = {}},
+                                            {});
     EXPECT_EQ(result, light);
 }
 

@@ -18,7 +18,8 @@ class LightTest : public BakeTest {};
 double texelsWithin(const LitProbe& probe, double expected, double sigmas) {
     double within = 0.0;
     for (std::size_t i = 0; i < probe.light.size(); ++i)
-        within += std::abs(static_cast<double>(probe.light[i].x) - expected) <= sigmas * probe.errors[i] + 1e-4 * expected;
+        within += std::abs(static_cast<double>(probe.light[i].x) - expected) <=
+                  sigmas * probe.errors[i] + 1e-4 * expected;
     return within / static_cast<double>(probe.light.size());
 }
 
@@ -42,11 +43,12 @@ glm::vec3 pointOf(const LitProbe& probe, std::size_t i, std::uint32_t edge, cons
 TEST_F(LightTest, AFurnaceHasTheLightOfItsSeries) {
     for (const std::uint8_t byte : {std::uint8_t{188}, std::uint8_t{243}}) {
         const double rho = linearOf(byte);
-        const LoadedScene scene = sceneOf(assetOf(hollowBox(glm::ivec3(10)), {grey(byte, 0.5)}));
+        const LoadedScene scene = sceneOf(assetOf(hollowBox(glm::ivec3(10)), {gray(byte, 0.5)}));
         const LitProbe probe = lightAt(scene, {0.43f, 0.51f, 0.38f}, plain(16, 256));
         const double expected = 0.5 / (1.0 - rho);
         std::cout << "  albedo " << rho << ": mean " << meanLight(probe) << ", expected " << expected
-                  << ", within 3 sigma " << texelsWithin(probe, expected, 3.0) << ", rays " << probe.rays << "\n";
+                  << ", within 3 sigma " << texelsWithin(probe, expected, 3.0) << ", rays " << probe.rays
+                  << "\n";
         EXPECT_NEAR(meanLight(probe) / expected, 1.0, 0.005);
         // Sixteen batches each: of 256 texels, 0.8 % of a t distribution lies outside.
         EXPECT_GE(texelsWithin(probe, expected, 3.0), 0.97);
@@ -56,7 +58,7 @@ TEST_F(LightTest, AFurnaceHasTheLightOfItsSeries) {
 TEST_F(LightTest, AWhiteHouseOfHalfLightIsOne) {
     // The scene of pbrt's analytic tests: reflectance 1/2, emission 1/2, hence radiance 1 everywhere.
     const double rho = linearOf(188);
-    const LoadedScene scene = sceneOf(assetOf(hollowBox(glm::ivec3(10)), {grey(188, 0.5)}));
+    const LoadedScene scene = sceneOf(assetOf(hollowBox(glm::ivec3(10)), {gray(188, 0.5)}));
     for (const LightSampling sampling : {LightSampling::Combined, LightSampling::Directions}) {
         BakeSettings settings = plain(16, 256);
         settings.sampling = sampling;
@@ -69,12 +71,13 @@ TEST_F(LightTest, AWhiteHouseOfHalfLightIsOne) {
 
 TEST_F(LightTest, BouncesAreCountedAsTheSettingSays) {
     const double rho = linearOf(188);
-    const LoadedScene scene = sceneOf(assetOf(hollowBox(glm::ivec3(10)), {grey(188, 1.0)}));
+    const LoadedScene scene = sceneOf(assetOf(hollowBox(glm::ivec3(10)), {gray(188, 1.0)}));
     for (const std::uint32_t bounces : {0u, 1u, 2u, 5u}) {
         BakeSettings settings = plain(16, 64);
         settings.maxBounces = bounces;
         const double expected = (1.0 - std::pow(rho, bounces + 1.0)) / (1.0 - rho);
-        EXPECT_NEAR(meanLight(lightAt(scene, {0.43f, 0.51f, 0.38f}, settings)) / expected, 1.0, 0.005) << bounces;
+        EXPECT_NEAR(meanLight(lightAt(scene, {0.43f, 0.51f, 0.38f}, settings)) / expected, 1.0, 0.005)
+            << bounces;
     }
 }
 
@@ -86,7 +89,7 @@ TEST_F(LightTest, ATurnedAndStretchedFurnaceIsTheSame) {
     for (const glm::dmat3& m : {turn * tilt * stretch, stretch * turn * tilt,
                                 turn * glm::dmat3{{-1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}}}) {
         const Affine world{m[0], m[1], m[2], glm::dvec3(3.0, -2.0, 5.0)};
-        const LoadedScene scene = sceneOf(assetOf(hollowBox(glm::ivec3(10)), {grey(188, 1.0)}), world);
+        const LoadedScene scene = sceneOf(assetOf(hollowBox(glm::ivec3(10)), {gray(188, 1.0)}), world);
         const glm::vec3 inside(world * glm::dvec4(0.43, 0.51, 0.38, 1.0));
         const double expected = 1.0 / (1.0 - linearOf(188));
         EXPECT_NEAR(meanLight(lightAt(scene, inside, plain(16, 128))) / expected, 1.0, 0.005);
@@ -94,11 +97,11 @@ TEST_F(LightTest, ATurnedAndStretchedFurnaceIsTheSame) {
 }
 
 TEST_F(LightTest, EnergyIsConserved) {
-    // A lamp in one corner of a grey room, everything seen by one probe: what is absorbed is what is emitted.
+    // A lamp in one corner of a gray room, everything seen by one probe: what is absorbed is what is emitted.
     VoxelModel room = hollowBox(glm::ivec3(10, 8, 12));
     for (int x = 2; x < 6; ++x)
         for (int z = 3; z < 7; ++z) room.set({x, 8, z}, 1);
-    const LoadedScene scene = sceneOf(assetOf(std::move(room), {grey(200), grey(120, 3.0)}));
+    const LoadedScene scene = sceneOf(assetOf(std::move(room), {gray(200), gray(120, 3.0)}));
     constexpr std::uint32_t kEdge = 64;
     const LitProbe probe = lightAt(scene, {0.52f, 0.37f, 0.66f}, plain(kEdge, 64));
     double absorbed = 0.0;
@@ -106,7 +109,8 @@ TEST_F(LightTest, EnergyIsConserved) {
     for (std::size_t i = 0; i < probe.light.size(); ++i) {
         const double area = areaOf(probe, i, kEdge);
         surface += area;
-        absorbed += (1.0 - static_cast<double>(probe.seen[i].albedo.x)) * static_cast<double>(probe.light[i].x) * area;
+        absorbed += (1.0 - static_cast<double>(probe.seen[i].albedo.x)) *
+                    static_cast<double>(probe.light[i].x) * area;
     }
     const double emitted = 3.0 * 16 * 0.01;
     std::cout << "  absorbed / emitted " << absorbed / emitted << ", area " << surface << " of 5.92\n";
@@ -116,7 +120,7 @@ TEST_F(LightTest, EnergyIsConserved) {
 // --- Sky ---
 
 TEST_F(LightTest, AWhiteSkyGivesOne) {
-    LoadedScene scene = sceneOf(assetOf(hollowBox(glm::ivec3(1), 1), {grey(255)}));
+    LoadedScene scene = sceneOf(assetOf(hollowBox(glm::ivec3(1), 1), {gray(255)}));
     scene.scene.sky = {.zenith = glm::dvec3(1.0), .horizon = glm::dvec3(1.0), .ground = glm::dvec3(1.0)};
     const LitProbe probe = lightAt(scene, {1.0f, 0.4f, 0.2f}, plain(32, 16));
     std::size_t seen = 0;
@@ -129,8 +133,8 @@ TEST_F(LightTest, AWhiteSkyGivesOne) {
 }
 
 /// Cosine-weighted share of the hemisphere above a floor at x metres from a wall of a finite size.
-double skyShare(double x, double z, double wallHeight, double wallZ0, double wallZ1) {
-    double share = 0.0;
+double skyFraction(double x, double z, double wallHeight, double wallZ0, double wallZ1) {
+    double fraction = 0.0;
     constexpr int kSteps = 400;
     for (int i = 0; i < kSteps; ++i) {
         for (int j = 0; j < kSteps; ++j) {
@@ -140,10 +144,10 @@ double skyShare(double x, double z, double wallHeight, double wallZ0, double wal
             const double t = d.x < 0.0 ? -x / d.x : -1.0;
             const double hitZ = z + t * d.z;
             const bool blocked = t > 0.0 && t * d.y < wallHeight && hitZ > wallZ0 && hitZ < wallZ1;
-            share += blocked ? 0.0 : 1.0;
+            fraction += blocked ? 0.0 : 1.0;
         }
     }
-    return share / (kSteps * kSteps);
+    return fraction / (kSteps * kSteps);
 }
 
 TEST_F(LightTest, AWallHidesHalfTheSky) {
@@ -151,7 +155,7 @@ TEST_F(LightTest, AWallHidesHalfTheSky) {
     fillBox(corner, {{-1, -1, 0}, {40, 40, 60}}, [](glm::ivec3 p) -> std::optional<MaterialIndex> {
         return p.x < 0 || p.y < 0 ? std::optional<MaterialIndex>(MaterialIndex{0}) : std::nullopt;
     });
-    LoadedScene scene = sceneOf(assetOf(std::move(corner), {grey(0)}));
+    LoadedScene scene = sceneOf(assetOf(std::move(corner), {gray(0)}));
     scene.scene.sky = {.zenith = glm::dvec3(1.0), .horizon = glm::dvec3(1.0), .ground = glm::dvec3(1.0)};
     const glm::vec3 position(0.31f, 0.4f, 3.05f);
     constexpr std::uint32_t kEdge = 32;
@@ -165,14 +169,14 @@ TEST_F(LightTest, AWallHidesHalfTheSky) {
         const glm::dvec3 p(pointOf(probe, i, kEdge, position));
         if (p.x > 1.5 || std::abs(p.z - 3.0) > 1.5) continue;
         found += static_cast<double>(probe.light[i].x);
-        expected += skyShare(p.x, p.z, 4.0, 0.0, 6.0);
+        expected += skyFraction(p.x, p.z, 4.0, 0.0, 6.0);
         if (p.x < nearest) {
             nearest = p.x;
             lightThere = static_cast<double>(probe.light[i].x);
         }
     }
-    std::cout << "  floor: found / expected " << found / expected << "; " << nearest << " m from the wall " << lightThere
-              << "\n";
+    std::cout << "  floor: found / expected " << found / expected << "; " << nearest << " m from the wall "
+              << lightThere << "\n";
     EXPECT_NEAR(found / expected, 1.0, 0.005);
     EXPECT_NEAR(lightThere, 0.5, 0.06);
 }
@@ -187,7 +191,8 @@ struct Patches {
     VoxelBox wall{};   ///< black, around the smaller patch: hides its sides
 };
 
-double meanOnPatch(const LoadedScene& scene, const Patches& patches, const LitProbe& probe, std::uint32_t edge) {
+double meanOnPatch(const LoadedScene& scene, const Patches& patches, const LitProbe& probe,
+                   std::uint32_t edge) {
     double sum = 0.0;
     double area = 0.0;
     const glm::vec3 low = 0.1f * glm::vec3(patches.receiver.min) - 1e-3f;
@@ -209,15 +214,19 @@ double formFactor(BakeSettings settings, const Patches& patches,
     if (!patches.wall.empty()) fillBox(model, patches.wall, [](glm::ivec3) { return MaterialIndex{0}; });
     fillBox(model, patches.receiver, [](glm::ivec3) { return MaterialIndex{0}; });
     fillBox(model, patches.emitter, [](glm::ivec3) { return MaterialIndex{1}; });
-    const LoadedScene scene = sceneOf(assetOf(std::move(model), {grey(0), grey(255, 1.0)}));
+    const LoadedScene scene = sceneOf(assetOf(std::move(model), {gray(0), gray(255, 1.0)}));
     settings.maxBounces = 0;
     return meanOnPatch(scene, patches, trace(scene, patches.probe, settings), settings.resolution.light);
 }
 
 TEST_F(LightTest, UnitSquaresHaveTheirFormFactors) {
-    const auto trace = [](const LoadedScene& s, const glm::vec3& p, const BakeSettings& b) { return lightAt(s, p, b); };
-    const Patches parallel{{{0, 10, 0}, {10, 11, 10}}, {{0, -1, 0}, {10, 0, 10}}, {0.5f, 0.5f, 0.5f}, {0, 1, 0}};
-    const Patches corner{{{-1, 0, 0}, {0, 10, 10}}, {{0, -1, 0}, {10, 0, 10}}, {0.55f, 0.5f, 0.5f}, {0, 1, 0}};
+    const auto trace = [](const LoadedScene& s, const glm::vec3& p, const BakeSettings& b) {
+        return lightAt(s, p, b);
+    };
+    const Patches parallel{
+        {{0, 10, 0}, {10, 11, 10}}, {{0, -1, 0}, {10, 0, 10}}, {0.5f, 0.5f, 0.5f}, {0, 1, 0}};
+    const Patches corner{
+        {{-1, 0, 0}, {0, 10, 10}}, {{0, -1, 0}, {10, 0, 10}}, {0.55f, 0.5f, 0.5f}, {0, 1, 0}};
     const double f1 = formFactor(plain(96, 32), parallel, trace);
     const double f2 = formFactor(plain(96, 32), corner, trace);
     std::cout << "  parallel " << f1 << " (0.19982), perpendicular " << f2 << " (0.20004)\n";
@@ -226,13 +235,17 @@ TEST_F(LightTest, UnitSquaresHaveTheirFormFactors) {
 }
 
 TEST_F(LightTest, FormFactorsAreReciprocal) {
-    const auto trace = [](const LoadedScene& s, const glm::vec3& p, const BakeSettings& b) { return lightAt(s, p, b); };
+    const auto trace = [](const LoadedScene& s, const glm::vec3& p, const BakeSettings& b) {
+        return lightAt(s, p, b);
+    };
     const VoxelBox large{{0, -1, 0}, {10, 0, 10}};
     const VoxelBox small{{-1, 2, 3}, {0, 7, 8}};
     const VoxelBox wall{{-1, 0, 0}, {0, 10, 10}};
     // A receiver's mean of I is F from it to the emitter.
-    const double largeToSmall = formFactor(plain(96, 64), {small, large, {0.4f, 0.5f, 0.5f}, {0, 1, 0}, wall}, trace);
-    const double smallToLarge = formFactor(plain(96, 64), {large, small, {0.4f, 0.5f, 0.5f}, {1, 0, 0}, wall}, trace);
+    const double largeToSmall =
+        formFactor(plain(96, 64), {small, large, {0.4f, 0.5f, 0.5f}, {0, 1, 0}, wall}, trace);
+    const double smallToLarge =
+        formFactor(plain(96, 64), {large, small, {0.4f, 0.5f, 0.5f}, {1, 0, 0}, wall}, trace);
     std::cout << "  A1 F12 " << 1.0 * largeToSmall << ", A2 F21 " << 0.25 * smallToLarge << "\n";
     EXPECT_NEAR(1.0 * largeToSmall / (0.25 * smallToLarge), 1.0, 0.01);
 }
@@ -242,7 +255,8 @@ TEST_F(LightTest, FormFactorsAreReciprocal) {
 TEST_F(LightTest, AllWaysToFindEmittersAgree) {
     const LoadedScene scene = sceneOf(demoRoom());
     std::vector<Mean> means;
-    for (const LightSampling way : {LightSampling::Combined, LightSampling::Emitters, LightSampling::Directions}) {
+    for (const LightSampling way :
+         {LightSampling::Combined, LightSampling::Emitters, LightSampling::Directions}) {
         BakeSettings settings = plain(16, 256);
         settings.sampling = way;
         settings.seed = 7 + static_cast<std::uint64_t>(way);
@@ -267,7 +281,7 @@ class NoiseTest : public LightTest {
             const bool inside = p.y >= 0 && p.x >= 0 && p.x < 10 && p.z >= 0 && p.z < 10;
             return inside ? std::nullopt : std::optional<MaterialIndex>(MaterialIndex{0});
         });
-        LoadedScene scene = sceneOf(assetOf(std::move(pit), {grey(188)}));
+        LoadedScene scene = sceneOf(assetOf(std::move(pit), {gray(188)}));
         scene.scene.sky = Sky{};
         std::vector<glm::dvec2> points;
         for (const std::uint32_t samples : {16u, 64u, 256u, 1024u, 4096u}) {
@@ -320,10 +334,11 @@ TEST_F(LightTest, AgreesWithTheReference) {
         const ReferenceLight expected =
             referenceLight(scene, glm::dvec3(pointOf(probe, i, 16, position)), normal, 20000, 3);
         const double sigma = std::hypot(expected.error, probe.errors[i]);
-        const double found = static_cast<double>(probe.light[i].x + probe.light[i].y + probe.light[i].z) / 3.0;
+        const double found =
+            static_cast<double>(probe.light[i].x + probe.light[i].y + probe.light[i].z) / 3.0;
         const double wanted = (expected.mean.x + expected.mean.y + expected.mean.z) / 3.0;
-        std::cout << "  texel " << i << ": " << found << " +- " << probe.errors[i] << ", reference " << wanted << " +- "
-                  << expected.error << "\n";
+        std::cout << "  texel " << i << ": " << found << " +- " << probe.errors[i] << ", reference " << wanted
+                  << " +- " << expected.error << "\n";
         EXPECT_GT(wanted, 0.0);
         EXPECT_NEAR(found, wanted, 3.5 * sigma);
     }
@@ -335,16 +350,19 @@ TEST_F(LightTest, AgreesWithTheReference) {
 TEST_F(LightTest, WallsKeepLightOut) {
     for (const int wall : {1, 4}) {
         VoxelModel rooms;
-        fillBox(rooms, {{-4, -4, -4}, {20 + wall + 4, 14, 14}}, [&](glm::ivec3 p) -> std::optional<MaterialIndex> {
-            const bool inner = p.y >= 0 && p.y < 10 && p.z >= 0 && p.z < 10;
-            const bool lit = inner && p.x >= 0 && p.x < 10;
-            const bool dark = inner && p.x >= 10 + wall && p.x < 20 + wall;
-            if (lit || dark) return std::nullopt;
-            return p.y == 10 && p.x >= 3 && p.x < 7 && p.z >= 3 && p.z < 7 ? MaterialIndex{1} : MaterialIndex{0};
-        });
-        const LoadedScene scene = sceneOf(assetOf(std::move(rooms), {grey(200), grey(200, 5.0)}));
+        fillBox(rooms, {{-4, -4, -4}, {20 + wall + 4, 14, 14}},
+                [&](glm::ivec3 p) -> std::optional<MaterialIndex> {
+                    const bool inner = p.y >= 0 && p.y < 10 && p.z >= 0 && p.z < 10;
+                    const bool lit = inner && p.x >= 0 && p.x < 10;
+                    const bool dark = inner && p.x >= 10 + wall && p.x < 20 + wall;
+                    if (lit || dark) return std::nullopt;
+                    return p.y == 10 && p.x >= 3 && p.x < 7 && p.z >= 3 && p.z < 7 ? MaterialIndex{1}
+                                                                                   : MaterialIndex{0};
+                });
+        const LoadedScene scene = sceneOf(assetOf(std::move(rooms), {gray(200), gray(200, 5.0)}));
         const double lit = meanLight(lightAt(scene, {0.5f, 0.5f, 0.5f}, plain(16, 64)));
-        const double dark = meanLight(lightAt(scene, {1.5f + 0.1f * static_cast<float>(wall), 0.5f, 0.5f}, plain(16, 64)));
+        const double dark =
+            meanLight(lightAt(scene, {1.5f + 0.1f * static_cast<float>(wall), 0.5f, 0.5f}, plain(16, 64)));
         std::cout << "  wall of " << wall << ": lit " << lit << ", dark " << dark << "\n";
         EXPECT_GT(lit, 0.1);
         EXPECT_LE(dark, 0.01 * lit);

@@ -12,10 +12,11 @@ class MaterialLightTest : public BakeTest {
     static double furnaceWith(const Material& block) {
         VoxelModel model = hollowBox(glm::ivec3(10));
         fillBox(model, {{3, 2, 3}, {8, 5, 7}}, [](glm::ivec3) { return MaterialIndex{1}; });
-        const LoadedScene scene = sceneOf(assetOf(std::move(model), {grey(188, 1.0), block}));
+        const LoadedScene scene = sceneOf(assetOf(std::move(model), {gray(188, 1.0), block}));
         const LitProbe probe = lightAt(scene, {0.15f, 0.81f, 0.18f}, plain(16, 128));
-        const Mean walls =
-            meanWhere(probe, [&](std::size_t i) { return probe.seen[i].albedo.x < 0.6f && probe.seen[i].albedo.x > 0.4f; });
+        const Mean walls = meanWhere(probe, [&](std::size_t i) {
+            return probe.seen[i].albedo.x < 0.6f && probe.seen[i].albedo.x > 0.4f;
+        });
         const double ratio = walls.value * (1.0 - linearOf(188));
         std::cout << "  " << toString(block.type) << ": " << ratio << " +- " << walls.error << "\n";
         return ratio;
@@ -77,13 +78,15 @@ TEST_F(MaterialLightTest, ShadowsThroughGlassAgreeWithPathsThroughIt) {
     Material pane = white(MaterialType::Glass);
     pane.transparency = 0.8f;
     pane.baseColor = {230, 200, 120, 255};
-    const LoadedScene scene = sceneOf(assetOf(std::move(model), {grey(188), pane, grey(255, 10.0)}));
+    const LoadedScene scene = sceneOf(assetOf(std::move(model), {gray(188), pane, gray(255, 10.0)}));
     std::vector<Mean> means;
-    for (const LightSampling way : {LightSampling::Combined, LightSampling::Emitters, LightSampling::Directions}) {
+    for (const LightSampling way :
+         {LightSampling::Combined, LightSampling::Emitters, LightSampling::Directions}) {
         BakeSettings settings = plain(16, 256);
         settings.sampling = way;
         settings.seed = 3 + static_cast<std::uint64_t>(way);
-        means.push_back(meanWhere(lightAt(scene, {0.5f, 0.3f, 0.45f}, settings), [](std::size_t) { return true; }));
+        means.push_back(
+            meanWhere(lightAt(scene, {0.5f, 0.3f, 0.45f}, settings), [](std::size_t) { return true; }));
         std::cout << "  " << means.back().value << " +- " << means.back().error << "\n";
     }
     EXPECT_GT(means[0].value, 0.05);

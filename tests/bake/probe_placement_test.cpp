@@ -9,7 +9,7 @@ namespace {
 LoadedScene slabScene(const Affine& world = identityAffine()) {
     VoxelModel slab;
     fillBox(slab, {{0, 0, 0}, {20, 4, 20}}, [](glm::ivec3) { return MaterialIndex{0}; });
-    return sceneOf(assetOf(std::move(slab), {grey(100)}), world);
+    return sceneOf(assetOf(std::move(slab), {gray(100)}), world);
 }
 
 TEST(SolidQuery, DistancesAreThoseToTheBox) {
@@ -24,8 +24,10 @@ TEST(SolidQuery, DistancesAreThoseToTheBox) {
         const auto models = bake::placedModels(scene);
         const bake::SolidQuery query(models);
         for (int i = 0; i < 500; ++i) {
-            const glm::dvec3 p = scene.bounds.min + (scene.bounds.max - scene.bounds.min) *
-                                     glm::dvec3(random.uniform(-0.5, 1.5), random.uniform(-2.0, 3.0), random.uniform(-0.5, 1.5));
+            const glm::dvec3 p =
+                scene.bounds.min + (scene.bounds.max - scene.bounds.min) *
+                                       glm::dvec3(random.uniform(-0.5, 1.5), random.uniform(-2.0, 3.0),
+                                                  random.uniform(-0.5, 1.5));
             const double expected = glm::length(p - glm::clamp(p, scene.bounds.min, scene.bounds.max));
             EXPECT_NEAR(query.nearest(p, 100.0).metres, expected, 1e-9);
         }
@@ -36,7 +38,8 @@ class PlaceProbe : public ::testing::Test {
   protected:
     bake::Placement place(const glm::vec3& at, float step, bool relocate = true) {
         const bake::SolidQuery query(models_);
-        return bake::placeProbe(query, {.start = at, .step = glm::vec3(step), .counts = glm::uvec3(1)}, 0, relocate);
+        return bake::placeProbe(query, {.start = at, .step = glm::vec3(step), .counts = glm::uvec3(1)}, 0,
+                                relocate);
     }
     LoadedScene scene_ = slabScene();
     std::vector<bake::PlacedModel> models_ = bake::placedModels(scene_);

@@ -16,7 +16,10 @@ using shared::TileStatistics;
 /// 64 texels of mean 2 whose batches have this variance.
 TileStatistics tileOf(std::uint32_t batches, double variance) {
     const double squaredError = batches > 1 ? 64.0 * variance / batches : 0.0;
-    return {.mean = 128.0f, .squaredError = static_cast<float>(squaredError), .surfaceTexels = 64, .batches = batches};
+    return {.mean = 128.0f,
+            .squaredError = static_cast<float>(squaredError),
+            .surfaceTexels = 64,
+            .batches = batches};
 }
 
 TEST(TileRounds, WithoutATargetEachTileGetsTheLeast) {
@@ -56,7 +59,7 @@ TEST(TileRounds, TheErrorIsThatOfTheMean) {
     const std::array tiles{tileOf(2, 0.0), tileOf(2, 0.0), tileOf(64, 1.0 / 3.0), tileOf(2, 0.0)};
     const bake::TileSummary summary = bake::summaryOf(tiles, rules);
     EXPECT_NEAR(summary.meanError.value(), 0.25 * std::sqrt(1.0 / 3.0 / 64.0 / 64.0) / 2.0, 1e-7);
-    EXPECT_DOUBLE_EQ(summary.cappedTileShare, 0.25);
+    EXPECT_DOUBLE_EQ(summary.noisyTileFraction, 0.25);
     EXPECT_TRUE(std::isinf(bake::relativeError(tileOf(1, 0.0), rules)));
 }
 
@@ -65,9 +68,10 @@ TEST(TileRounds, OneBatchTellsNoError) {
     const TileRules fixed{.minBatches = 1, .maxBatches = 1};
     const std::array tiles{tileOf(1, 0.0), tileOf(1, 0.0)};
     EXPECT_FALSE(bake::summaryOf(tiles, fixed).meanError);
-    EXPECT_EQ(bake::summaryOf(tiles, fixed).cappedTileShare, 0.0);
+    EXPECT_EQ(bake::summaryOf(tiles, fixed).noisyTileFraction, 0.0);
     const TileRules adaptive{.minBatches = 1, .maxBatches = 1, .noiseTarget = 0.5};
-    EXPECT_EQ(bake::summaryOf(tiles, adaptive).cappedTileShare, 1.0) << "stopped, and nobody knows how noisy";
+    EXPECT_EQ(bake::summaryOf(tiles, adaptive).noisyTileFraction, 1.0)
+        << "stopped, and nobody knows how noisy";
     const std::array mixed{tileOf(1, 0.0), tileOf(2, 0.0)};
     EXPECT_EQ(bake::summaryOf(mixed, fixed).meanError, 0.0);
 }

@@ -101,7 +101,7 @@ VoxelModel roomWithLamp() {
 }
 
 TEST_F(VerifyReference, EmittersFoundEitherWayGiveTheSameLight) {
-    const LoadedScene scene = sceneOf(assetOf(roomWithLamp(), {grey(188), grey(255, 20.0)}));
+    const LoadedScene scene = sceneOf(assetOf(roomWithLamp(), {gray(188), gray(255, 20.0)}));
     const Light with = lightOf(scene, kCorner, kSmall);
     const Light without = lightOf(scene, kCorner, withoutEmitterSampling(1024));
     EXPECT_GT(with.mean, 0.05);
@@ -122,7 +122,7 @@ TEST_F(VerifyReference, SoTheyDoBehindGlassAndOnMetal) {
     metal.type = MaterialType::Metal;
     metal.metalness = 0.9f;
     metal.roughness = 0.3f;
-    const LoadedScene scene = sceneOf(assetOf(std::move(model), {grey(188), grey(255, 20.0), pane, metal}));
+    const LoadedScene scene = sceneOf(assetOf(std::move(model), {gray(188), gray(255, 20.0), pane, metal}));
     const Light with = lightOf(scene, kCorner, kSmall);
     const Light without = lightOf(scene, kCorner, withoutEmitterSampling(1024));
     EXPECT_GT(with.mean, 0.02);
@@ -142,7 +142,7 @@ LoadedScene wellScene(int layers) {
     clear.baseColor = {255, 255, 255, 255};
     clear.transparency = 1.0f;
     clear.indexOfRefraction = 1.0f;
-    VoxelAsset asset = assetOf(std::move(well), {grey(120), clear});
+    VoxelAsset asset = assetOf(std::move(well), {gray(120), clear});
     if (layers > 0) {
         VoxelModel slab;
         fillBox(slab, {glm::ivec3(0), {6, layers, 6}}, [](glm::ivec3) { return MaterialIndex{1}; });

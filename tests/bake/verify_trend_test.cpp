@@ -1,6 +1,6 @@
 // The error of small bakes against path tracing, held against the figures of the last version
-// (tests/golden/data/verify_trend.json): no worse by 2 %. Where the figures get better, or worse on purpose, run with
-// PFVOX_UPDATE_GOLDEN=1 and say why in CHANGELOG.md.
+// (tests/golden/data/verify_trend.json): no worse by 2 %. Where the figures get better, or worse on purpose,
+// run with PFVOX_UPDATE_GOLDEN=1 and say why in CHANGELOG.md.
 #include <algorithm>
 #include <cstdlib>
 #include <iostream>
@@ -18,7 +18,7 @@ namespace {
 using nlohmann::json;
 
 constexpr double kWorse = 1.02;
-/// Of a share: what another driver's rounding does.
+/// Of a fraction: what another driver's rounding does.
 constexpr double kSlack = 0.002;
 
 /// A few probes of a scene of data/, around one of its cameras.
@@ -57,12 +57,14 @@ class VerifyTrend : public BakeTest {
     Result<LoadedScene> load(const TrendScene& trend) {
         const std::filesystem::path data = PFVOX_DATA_DIR;
         for (const std::string& model : trend.models)
-            PFVOX_CHECK(convertFile(data / (model + ".vox"), folder / (model + ".pf_vox"), {}, Limits{}, diagnostics));
+            PFVOX_CHECK(convertFile(data / (model + ".vox"), folder / (model + ".pf_vox"), {}, Limits{},
+                                    diagnostics));
         PFVOX_TRY(const std::string, text,
-                  withModelPaths(readText(data / trend.file), trend.file, Limits{}, diagnostics,
-                                 [](const ModelPathUse& use) -> std::optional<std::string> {
-                                     return std::filesystem::path(use.model.path).replace_extension(".pf_vox").string();
-                                 }));
+                  withModelPaths(
+                      readText(data / trend.file), trend.file, Limits{}, diagnostics,
+                      [](const ModelPathUse& use) -> std::optional<std::string> {
+                          return std::filesystem::path(use.model.path).replace_extension(".pf_vox").string();
+                      }));
         writeText(folder / trend.file, text);
         PFVOX_TRY(LoadedScene, scene, loadScene(folder / trend.file, Limits{}, diagnostics));
         scene.probes = trend.grid;
@@ -80,13 +82,15 @@ class VerifyTrend : public BakeTest {
         PFVOX_TRY(const ProbeFileReader, reader, ProbeFileReader::open(file, Limits{}, diagnostics));
         PFVOX_TRY(const gpu::Scene, gpuScene, gpu::Scene::build(device(), gpu::partsOf(scene), diagnostics));
         const auto camera = std::ranges::find(scene.scene.cameras, trend.camera, &Camera::name);
-        if (camera == scene.scene.cameras.end()) return fail(ErrorCode::BadReference, "no camera " + trend.camera);
+        if (camera == scene.scene.cameras.end())
+            return fail(ErrorCode::BadReference, "no camera " + trend.camera);
         PFVOX_TRY(const ProbeVerifier, verifier, ProbeVerifier::create(device()));
         json figures;
         std::optional<ReferencePicture> reference;
         for (const bool compact : {false, true}) {
-            PFVOX_TRY(const gpu::GpuProbes, probes,
-                      gpu::GpuProbes::upload(device(), reader, {.voxelMetres = 0.1f, .compactOnly = compact}));
+            PFVOX_TRY(
+                const gpu::GpuProbes, probes,
+                gpu::GpuProbes::upload(device(), reader, {.voxelMetres = 0.1f, .compactOnly = compact}));
             const VerifyInput input{scene, gpuScene, probes, *camera};
             if (!reference) {
                 PFVOX_TRY(ReferencePicture, traced,
@@ -96,7 +100,9 @@ class VerifyTrend : public BakeTest {
             PFVOX_TRY(const VerifiedPicture, picture, verifier.lookUp(device(), input, *reference));
             const VerifyScore score = scoreOf(picture);
             EXPECT_EQ(score.withoutValue, 0u) << trend.name;
-            figures[compact ? "compact" : "all"] = {{"relativeRmse", score.all.relativeRmse}, {"meanFlip", score.meanFlip}, {"trimmed", score.all.relativeTrimmedRmse}};
+            figures[compact ? "compact" : "all"] = {{"relativeRmse", score.all.relativeRmse},
+                                                    {"meanFlip", score.meanFlip},
+                                                    {"trimmed", score.all.relativeTrimmedRmse}};
         }
         return figures;
     }

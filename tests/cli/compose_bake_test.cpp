@@ -32,8 +32,8 @@ class ComposeBakeTest : public ::testing::Test {
         return latest;
     }
     ProcessResult bake(std::vector<std::string> more) const {
-        std::vector<std::string> words{PFVOX_PROBE_BAKE,   "bake",      "scenes/made.toml", "-o", "out.pf_probe",
-                                       "--resolution", "16,8,4,6", "--samples", "32"};
+        std::vector<std::string> words{PFVOX_PROBE_BAKE, "bake",     "scenes/made.toml", "-o", "out.pf_probe",
+                                       "--resolution",   "16,8,4,6", "--samples",        "32"};
         words.insert(words.end(), more.begin(), more.end());
         return runProcess(std::move(words), {.environment = {}, .input = {}, .folder = folder.path()});
     }
@@ -54,7 +54,8 @@ TEST_F(ComposeBakeTest, WhatIsSavedIsBaked) {
     editor.select(0);
     ASSERT_TRUE(editor.setModel(0, turnedAbout(editor.scene().models[0], {0.6, 0, 0.6}, 0.5)));
     ASSERT_TRUE(editor.setSun({.direction = {0.3, -1, 0.2}, .irradiance = {2, 2, 1.5}}));
-    ASSERT_TRUE(editor.setSky({.zenith = glm::dvec3(0.5), .horizon = glm::dvec3(0.5), .ground = glm::dvec3(0.5)}));
+    ASSERT_TRUE(
+        editor.setSky({.zenith = glm::dvec3(0.5), .horizon = glm::dvec3(0.5), .ground = glm::dvec3(0.5)}));
     loaded = settle();
     ASSERT_TRUE(loaded);
     DiagnosticList diagnostics;
@@ -71,7 +72,8 @@ TEST_F(ComposeBakeTest, WhatIsSavedIsBaked) {
     EXPECT_FALSE(std::filesystem::exists(folder / "out.pf_probe"));
     const ProcessResult baked = bake({"--warnings-as-errors"});
     ASSERT_EQ(baked.exitCode, 0) << baked.err << readText(folder / "scenes" / "made.toml");
-    const Result<ProbeFileReader> reader = ProbeFileReader::open(folder / "out.pf_probe", Limits{}, diagnostics);
+    const Result<ProbeFileReader> reader =
+        ProbeFileReader::open(folder / "out.pf_probe", Limits{}, diagnostics);
     ASSERT_TRUE(reader) << describe(reader.error());
     EXPECT_EQ(reader->info().grid, *grid);
     EXPECT_TRUE(reader->info().isWhole());

@@ -30,8 +30,7 @@ TEST_F(Vox2pf, baseDirGivesNamedFilesTheirPlaceOfTheFolder) {
     addSource("in/props/lamp.vox");
     addSource("in/tree.vox", "tree.vox");
     addSource("outside.vox");
-    writeText(folder / "settings.toml",
-              "[[override]]\nfiles = \"props/**\"\nimport.voxelSizeMetres = 0.5\n");
+    writeText(folder / "settings.toml", "[[override]]\nfiles = \"props/**\"\nimport.voxelSizeMetres = 0.5\n");
     const std::string base = (folder / "in").string();
     ASSERT_EQ(run({"in", "-o", "whole", "--settings", "settings.toml"}).exitCode, 0);
     for (const char* file : {"in/props/lamp.vox", "in/tree.vox"}) {

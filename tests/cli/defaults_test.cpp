@@ -1,5 +1,6 @@
-// What --help calls the default is what happens without the option: each such option of each program is left out, then given with
-// what --help shows, and settings and bytes must be the same. An option that shows a default must have a row here.
+// What --help calls the default is what happens without the option: each such option of each program is left
+// out, then given with what --help shows, and settings and bytes must be the same. An option that shows a
+// default must have a row here.
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
@@ -17,11 +18,14 @@ struct Row {
     std::string tool;
     std::string command;  ///< empty = options of all commands, and of tools without commands
     std::string option;
-    Arguments given = {};   ///< what says the same; empty = the option with what --help shows, up to a comma or semicolon
+    Arguments given =
+        {};  ///< what says the same; empty = the option with what --help shows, up to a comma or semicolon
     Arguments others = {};  ///< for both runs, besides those that every run has
 };
 
-void PrintTo(const Row& row, std::ostream* out) { *out << row.tool << ' ' << row.command << ' ' << row.option; }
+void PrintTo(const Row& row, std::ostream* out) {
+    *out << row.tool << ' ' << row.command << ' ' << row.option;
+}
 
 const Arguments kTiny{"--resolution", "16,8,4,6"};
 const Arguments kPicture{"--screenshot", "a.png", "--size", "24x16"};
@@ -53,11 +57,19 @@ const std::vector<Row>& rows() {
         {"probe-bake", "bake", "--device-memory", {"--device-memory", "16777216"}, kTiny},
         {"probe-bake", "bake", "--probes", {}, kTiny},
         {"probe-bake", "bake", "--device", {"--device", "0"}, kTiny},
-        {"probe-bake", "verify", "--camera", {"--camera", "front", "--camera", "back"}, {"--size", "8x8", "--samples", "2"}},
+        {"probe-bake",
+         "verify",
+         "--camera",
+         {"--camera", "front", "--camera", "back"},
+         {"--size", "8x8", "--samples", "2"}},
         {"probe-bake", "verify", "--size", {}, {"--samples", "2"}},
         {"probe-bake", "verify", "--samples", {}, {"--size", "8x8"}},
         {"probe-bake", "verify", "--reference-noise", {}, {"--size", "8x8", "--samples", "2"}},
-        {"probe-bake", "verify", "--max-samples", {"--max-samples", "32"}, {"--size", "8x8", "--samples", "2"}},
+        {"probe-bake",
+         "verify",
+         "--max-samples",
+         {"--max-samples", "32"},
+         {"--size", "8x8", "--samples", "2"}},
         {"probe-bake", "verify", "--device", {"--device", "0"}, {"--size", "8x8", "--samples", "2"}},
         {"pfview", "", "--size"},
         {"pfview", "", "--camera", {"--camera", "front"}, kPicture},
@@ -75,7 +87,9 @@ const std::vector<Row>& rows() {
     return all;
 }
 
-bool isBuilt(const std::string& tool) { return std::ranges::count(builtTools(), tool) != 0; }
+bool isBuilt(const std::string& tool) {
+    return std::ranges::count(builtTools(), tool) != 0;
+}
 
 TEST(Defaults, EveryOneThatIsShownIsTested) {
     std::size_t shown = 0;
@@ -84,9 +98,11 @@ TEST(Defaults, EveryOneThatIsShownIsTested) {
             if (row.shown.empty()) continue;
             ++shown;
             const auto isOf = [&](const Row& tested) {
-                return tested.tool == it.tool && tested.option == row.option && (tested.command.empty() || tested.command == it.command);
+                return tested.tool == it.tool && tested.option == row.option &&
+                       (tested.command.empty() || tested.command == it.command);
             };
-            EXPECT_TRUE(std::ranges::any_of(rows(), isOf)) << it.tool << ' ' << it.command << ": no row for\n" << row.line;
+            EXPECT_TRUE(std::ranges::any_of(rows(), isOf)) << it.tool << ' ' << it.command << ": no row for\n"
+                                                           << row.line;
         }
     }
     EXPECT_GT(shown, 20u);
@@ -99,8 +115,12 @@ TEST(Defaults, NoneIsToldWithoutTheTable) {
     for (const ToolCommand& it : everyCommand()) {
         for (const HelpRow& row : helpRows(it)) {
             const std::string text = row.line.substr(0, row.line.find(" (default: "));
-            EXPECT_FALSE(std::regex_search(text, kInWords)) << it.tool << ' ' << it.command << ": showDefault() tells it\n" << row.line;
-            EXPECT_FALSE(row.shown.empty() && std::regex_search(text, kPair)) << it.tool << ' ' << it.command << ":\n" << row.line;
+            EXPECT_FALSE(std::regex_search(text, kInWords))
+                << it.tool << ' ' << it.command << ": showDefault() tells it\n"
+                << row.line;
+            EXPECT_FALSE(row.shown.empty() && std::regex_search(text, kPair))
+                << it.tool << ' ' << it.command << ":\n"
+                << row.line;
         }
     }
 }
@@ -158,7 +178,8 @@ path = "box.pf_vox"
     std::string run(Arguments arguments) const {
         const std::string tool = arguments[0];
         arguments[0] = std::string(PFVOX_TOOLS_DIR) + "/" + tool;
-        const ProcessResult result = runProcess(arguments, {.environment = {}, .input = {}, .folder = folder_.path()});
+        const ProcessResult result =
+            runProcess(arguments, {.environment = {}, .input = {}, .folder = folder_.path()});
         EXPECT_EQ(result.exitCode, 0) << ::testing::PrintToString(arguments) << "\n" << result.err;
         return result.out;
     }
@@ -211,11 +232,13 @@ path = "box.pf_vox"
 
     /// The key is of all that decides the content; bytes are made where that is quick.
     std::string bake(const Arguments& arguments) const {
-        const Arguments bare(arguments.begin() + static_cast<std::ptrdiff_t>(GetParam().others.size()), arguments.end());
+        const Arguments bare(arguments.begin() + static_cast<std::ptrdiff_t>(GetParam().others.size()),
+                             arguments.end());
         const Arguments line{"probe-bake", "bake", "scene.toml", "-o", "scene.pf_probe"};
         std::string all;
         for (const Arguments& options : {bare, arguments}) {
-            if (options == bare && std::ranges::count(GetParam().others, std::string("--profile")) != 0) continue;
+            if (options == bare && std::ranges::count(GetParam().others, std::string("--profile")) != 0)
+                continue;
             const json planned = json::parse(run(joined(joined(line, {"--dry-run", "--json"}), options)));
             all += planned["contentKey"].get<std::string>() + "\n";
         }
@@ -225,12 +248,14 @@ path = "box.pf_vox"
     }
 
     void bakeOnce() const {
-        run({"probe-bake", "bake", "scene.toml", "-o", "scene.pf_probe", "--resolution", "16,8,4,6", "--samples", "32"});
+        run({"probe-bake", "bake", "scene.toml", "-o", "scene.pf_probe", "--resolution", "16,8,4,6",
+             "--samples", "32"});
     }
 
     std::string verify(const Arguments& arguments) const {
         bakeOnce();
-        std::istringstream lines(run(joined({"probe-bake", "verify", "scene.toml", "scene.pf_probe", "--json"}, arguments)));
+        std::istringstream lines(
+            run(joined({"probe-bake", "verify", "scene.toml", "scene.pf_probe", "--json"}, arguments)));
         std::string all;
         for (std::string line; std::getline(lines, line);) {
             json score = json::parse(line);
@@ -245,9 +270,11 @@ path = "box.pf_vox"
         json all = json::parse(run(joined({"pfview", "scene.toml", "--stats-json", "-"}, arguments)));
         eraseMeasured(all);
         const bool hasPicture = std::filesystem::exists(folder_ / "a.png");
-        if (!hasPicture) {  // how many frames were drawn before those that count depends on the time they took
+        if (!hasPicture) {  // how many frames were drawn before those that count depends on the time they
+                            // took
             all.erase("light");
-            for (const char* const counted : {"hits", "steps", "stepsPerCameraRay", "sunRays", "ambientRays", "reflectionRays"})
+            for (const char* const counted :
+                 {"hits", "steps", "stepsPerCameraRay", "sunRays", "ambientRays", "reflectionRays"})
                 all["picture"].erase(counted);
         }
         return all.dump(1) + (hasPicture ? readText(folder_ / "a.png") : "");

@@ -7,20 +7,22 @@
 namespace pfvox::test {
 namespace {
 
-using ::testing::HasSubstr;
 using nlohmann::json;
+using ::testing::HasSubstr;
 
 TEST_F(ProbeBakeScene, WarningsNameTheSceneOnce) {
-    writeText(folder / "a.toml", "colour = 1\n[[models]]\npath = \"box.pf_vox\"\n");
+    writeText(folder / "a.toml", "color = 1\n[[models]]\npath = \"box.pf_vox\"\n");
     const ProcessResult result = run({"a.toml", "-o", "a.pf_probe", "--dry-run"});
     EXPECT_EQ(result.exitCode, 0);
-    EXPECT_THAT(result.err, ::testing::StartsWith("warning: a.toml: line 1, column 1: unknown key colour"));
+    EXPECT_THAT(result.err, ::testing::StartsWith("warning: a.toml: line 1, column 1: unknown key color"));
 }
 
 TEST_F(ProbeBakeScene, WithoutADriverTheRemedyIsNamed) {
     const ProcessResult result =
         runProcess({PFVOX_PROBE_BAKE, "box.pf_vox", "-o", "a.pf_probe"},
-                   {.environment = {"VK_DRIVER_FILES=/nowhere", "VK_ICD_FILENAMES=/nowhere"}, .input = {}, .folder = folder.path()});
+                   {.environment = {"VK_DRIVER_FILES=/nowhere", "VK_ICD_FILENAMES=/nowhere"},
+                    .input = {},
+                    .folder = folder.path()});
     EXPECT_EQ(result.exitCode, 6);
     EXPECT_THAT(result.err, HasSubstr("no Vulkan driver is installed"));
     EXPECT_FALSE(std::filesystem::exists(folder / "a.pf_probe"));
@@ -28,7 +30,8 @@ TEST_F(ProbeBakeScene, WithoutADriverTheRemedyIsNamed) {
 
 TEST_F(ProbeBakeScene, BakesAndLeavesAloneWhatIsUpToDate) {
     writeScene("scene.toml", "box.pf_vox", kGrid);
-    const ProcessResult baked = run(tiny({"scene.toml", "-o", "out.pf_probe", "--json", "--depfile", "out.d"}));
+    const ProcessResult baked =
+        run(tiny({"scene.toml", "-o", "out.pf_probe", "--json", "--depfile", "out.d"}));
     ASSERT_EQ(baked.exitCode, 0) << baked.err;
     const json report = json::parse(baked.out);
     expectSchema("bake", report);
@@ -41,7 +44,8 @@ TEST_F(ProbeBakeScene, BakesAndLeavesAloneWhatIsUpToDate) {
     const ProcessResult again = run(tiny({"scene.toml", "-o", "out.pf_probe", "--json"}));
     EXPECT_EQ(json::parse(again.out)["status"], "up-to-date");
     const auto time = std::filesystem::last_write_time(folder / "out.pf_probe");
-    const ProcessResult forced = run(tiny({"scene.toml", "-o", "out.pf_probe", "--force", "--if-changed", "--explain"}));
+    const ProcessResult forced =
+        run(tiny({"scene.toml", "-o", "out.pf_probe", "--force", "--if-changed", "--explain"}));
     EXPECT_THAT(forced.out, HasSubstr("--force"));
     EXPECT_EQ(std::filesystem::last_write_time(folder / "out.pf_probe"), time);
     const ProcessResult seeded = run(tiny({"scene.toml", "-o", "out.pf_probe", "--seed", "5", "--explain"}));
@@ -61,7 +65,8 @@ TEST_F(ProbeBakeScene, ADryRunSaysWhatWouldBeBaked) {
     ASSERT_EQ(run(tiny({"scene.toml", "-o", "out.pf_probe"})).exitCode, 0);
     const ProcessResult again = run(tiny({"scene.toml", "-o", "out.pf_probe", "--dry-run"}));
     EXPECT_THAT(again.out, HasSubstr("is up to date"));
-    EXPECT_THAT(run(tiny({"scene.toml", "-o", "out.pf_probe", "--dry-run", "--force"})).out, HasSubstr("would bake"));
+    EXPECT_THAT(run(tiny({"scene.toml", "-o", "out.pf_probe", "--dry-run", "--force"})).out,
+                HasSubstr("would bake"));
 }
 
 TEST_F(ProbeBakeScene, ShardsMergeToTheWhole) {
@@ -72,16 +77,24 @@ TEST_F(ProbeBakeScene, ShardsMergeToTheWhole) {
     ASSERT_EQ(run({"merge", "a.pf_probe", "b.pf_probe", "-o", "merged.pf_probe"}).exitCode, 0);
     const ProcessResult compared = run({"compare", "--equal", "whole.pf_probe", "merged.pf_probe"});
     EXPECT_EQ(compared.exitCode, 0) << compared.out << compared.err;
-    EXPECT_NE(readText(folder / "whole.pf_probe"), readText(folder / "merged.pf_probe")) << "no proximity grid";
-    ASSERT_EQ(run({"merge", "b.pf_probe", "a.pf_probe", "-o", "full.pf_probe", "--scene", "scene.toml"}).exitCode, 0);
+    EXPECT_NE(readText(folder / "whole.pf_probe"), readText(folder / "merged.pf_probe"))
+        << "no proximity grid";
+    ASSERT_EQ(
+        run({"merge", "b.pf_probe", "a.pf_probe", "-o", "full.pf_probe", "--scene", "scene.toml"}).exitCode,
+        0);
     EXPECT_EQ(readText(folder / "whole.pf_probe"), readText(folder / "full.pf_probe"));
-    EXPECT_EQ(json::parse(run(tiny({"scene.toml", "-o", "full.pf_probe", "--json"})).out)["status"], "up-to-date");
-    EXPECT_EQ(json::parse(run(tiny({"scene.toml", "-o", "merged.pf_probe", "--json"})).out)["status"], "baked") << "no proximity grid";
-    const ProcessResult other = run(tiny({"scene.toml", "-o", "full.pf_probe", "--probes", "0:7", "--json", "--explain"}));
+    EXPECT_EQ(json::parse(run(tiny({"scene.toml", "-o", "full.pf_probe", "--json"})).out)["status"],
+              "up-to-date");
+    EXPECT_EQ(json::parse(run(tiny({"scene.toml", "-o", "merged.pf_probe", "--json"})).out)["status"],
+              "baked")
+        << "no proximity grid";
+    const ProcessResult other =
+        run(tiny({"scene.toml", "-o", "full.pf_probe", "--probes", "0:7", "--json", "--explain"}));
     EXPECT_EQ(json::parse(other.out)["status"], "baked") << "other probes";
     EXPECT_THAT(json::parse(other.out)["reason"], "the existing output holds other probes");
     writePfVox(folder / "box.pf_vox", boxAsset({{0, 0, 0}, {12, 7, 12}}, 0.1));
-    const ProcessResult changed = run({"merge", "a.pf_probe", "b.pf_probe", "-o", "other.pf_probe", "--scene", "scene.toml"});
+    const ProcessResult changed =
+        run({"merge", "a.pf_probe", "b.pf_probe", "-o", "other.pf_probe", "--scene", "scene.toml"});
     EXPECT_EQ(changed.exitCode, 4);
     EXPECT_THAT(changed.err, HasSubstr("another scene"));
     EXPECT_FALSE(std::filesystem::exists(folder / "other.pf_probe"));
@@ -136,7 +149,8 @@ class StoppedBake : public ProbeBakeScene {
     }
     std::filesystem::path journal() const { return folder / "out.pf_probe.journal"; }
 
-    std::vector<std::string> arguments{"scene.toml", "-o", "out.pf_probe", "--resolution", "64,32,4,6", "--samples", "512"};
+    std::vector<std::string> arguments{"scene.toml", "-o",        "out.pf_probe", "--resolution",
+                                       "64,32,4,6",  "--samples", "512"};
 };
 
 TEST_F(StoppedBake, CtrlCLeavesWhatResumeTakes) {
@@ -235,7 +249,8 @@ TEST_F(ProbeBakeScene, OutputsMayHaveTheLongestNames) {
 
 TEST_F(ProbeBakeScene, TooLittleDeviceMemoryIsNamed) {
     writeScene("scene.toml", "box.pf_vox", kGrid);
-    const ProcessResult scarce = run({"scene.toml", "-o", "out.pf_probe", "--profile", "thesis", "--device-memory", "64"});
+    const ProcessResult scarce =
+        run({"scene.toml", "-o", "out.pf_probe", "--profile", "thesis", "--device-memory", "64"});
     EXPECT_EQ(scarce.exitCode, 6);
     EXPECT_THAT(scarce.err, HasSubstr("MiB of device memory"));
     EXPECT_THAT(scarce.err, HasSubstr("--profile"));
@@ -255,7 +270,8 @@ TEST_F(ProbeBakeScene, MistakesAreNamed) {
     EXPECT_EQ(source.exitCode, 4);
     EXPECT_THAT(source.err, HasSubstr("vox2pf"));
 
-    writeScene("outside.toml", "box.pf_vox", "probeGridPos = [50, 0, 0]\nprobeGridStep = 1\nprobeGridCount = [2, 2, 2]\n");
+    writeScene("outside.toml", "box.pf_vox",
+               "probeGridPos = [50, 0, 0]\nprobeGridStep = 1\nprobeGridCount = [2, 2, 2]\n");
     const ProcessResult outside = run(tiny({"outside.toml", "-o", "out.pf_probe"}));
     EXPECT_EQ(outside.exitCode, 4);
     EXPECT_THAT(outside.err, HasSubstr("outside the scene"));
@@ -274,13 +290,15 @@ TEST_F(ProbeBakeScene, MistakesAreNamed) {
 
 TEST_F(ProbeBakeScene, VerifyLooksThroughTheCameras) {
     writeScene("scene.toml", "box.pf_vox",
-               std::string(kGrid) + "[[cameras]]\nname = \"front\"\nposition = [0.6, 1.2, 3]\ntarget = [0.6, 0.3, 0.6]\n");
+               std::string(kGrid) +
+                   "[[cameras]]\nname = \"front\"\nposition = [0.6, 1.2, 3]\ntarget = [0.6, 0.3, 0.6]\n");
     ASSERT_EQ(run(tiny({"scene.toml", "-o", "out.pf_probe"})).exitCode, 0);
     const auto verify = [&](std::vector<std::string> options) {
         options.insert(options.begin(), {"verify", "scene.toml", "out.pf_probe", "--size", "48x32"});
         return run(std::move(options));
     };
-    const ProcessResult result = verify({"--json", "--samples", "16", "--max-samples", "16", "-o", "pictures"});
+    const ProcessResult result =
+        verify({"--json", "--samples", "16", "--max-samples", "16", "-o", "pictures"});
     ASSERT_EQ(result.exitCode, 0) << result.err;
     const json score = json::parse(result.out);
     expectSchema("verify", score);
@@ -297,10 +315,12 @@ TEST_F(ProbeBakeScene, VerifyLooksThroughTheCameras) {
     EXPECT_EQ(verify({"--max-samples", "1"}).exitCode, 2);
 }
 
-/// A reference that is too noisy for what it judges gets more paths, and where it may not, the figures say so.
+/// A reference that is too noisy for what it judges gets more paths, and where it may not, the figures say
+/// so.
 TEST_F(ProbeBakeScene, VerifyGoesOnUntilTheReferenceIsGoodEnough) {
     writeScene("scene.toml", "box.pf_vox",
-               std::string(kGrid) + "[[cameras]]\nname = \"front\"\nposition = [0.6, 1.2, 3]\ntarget = [0.6, 0.3, 0.6]\n");
+               std::string(kGrid) +
+                   "[[cameras]]\nname = \"front\"\nposition = [0.6, 1.2, 3]\ntarget = [0.6, 0.3, 0.6]\n");
     ASSERT_EQ(run(tiny({"scene.toml", "-o", "out.pf_probe"})).exitCode, 0);
     const auto verify = [&](std::vector<std::string> options) {
         options.insert(options.begin(), {"verify", "scene.toml", "out.pf_probe", "--size", "48x32"});
@@ -318,8 +338,10 @@ TEST_F(ProbeBakeScene, VerifyGoesOnUntilTheReferenceIsGoodEnough) {
     const json capped = scoreOf({"--samples", "4", "--reference-noise", "0"});
     EXPECT_EQ(capped["reference"]["samples"], 64);
     EXPECT_EQ(capped["reference"]["isCertain"], false);
-    EXPECT_THAT(capped["reference"]["message"].get<std::string>(), HasSubstr("figures are uncertain; raise --max-samples"));
-    EXPECT_THAT(verify({"--samples", "4", "--reference-noise", "0"}).out, HasSubstr("front: reference noise"));
+    EXPECT_THAT(capped["reference"]["message"].get<std::string>(),
+                HasSubstr("figures are uncertain; raise --max-samples"));
+    EXPECT_THAT(verify({"--samples", "4", "--reference-noise", "0"}).out,
+                HasSubstr("front: reference noise"));
     const json reached = scoreOf({"--samples", "2", "--max-samples", "4096"});
     EXPECT_EQ(reached["reference"]["isCertain"], true);
     EXPECT_GT(reached["reference"]["samples"], 2);
@@ -332,7 +354,8 @@ TEST_F(ProbeBakeScene, VerifyGoesOnUntilTheReferenceIsGoodEnough) {
     EXPECT_EQ(scoreOf(more)["all"], capped["all"]);
     EXPECT_EQ(scoreOf(few)["all"], capped["all"]);
     EXPECT_EQ(readTree(folder / "kept").size(), 1u);
-    for (const auto& [name, bytes] : readTree(folder / "kept")) writeText(folder / "kept" / name, "damaged" + bytes);
+    for (const auto& [name, bytes] : readTree(folder / "kept"))
+        writeText(folder / "kept" / name, "damaged" + bytes);
     EXPECT_EQ(scoreOf(more)["all"], capped["all"]);
 }
 

@@ -38,8 +38,8 @@ class ProbeBake : public ::testing::Test {
     }
 
     static void expectSchema(const std::string& name, const nlohmann::json& value) {
-        const auto schema =
-            nlohmann::json::parse(readText(std::filesystem::path(PFVOX_DOCS_DIR) / "schema" / (name + ".schema.json")));
+        const auto schema = nlohmann::json::parse(
+            readText(std::filesystem::path(PFVOX_DOCS_DIR) / "schema" / (name + ".schema.json")));
         EXPECT_THAT(SchemaChecker::check(schema, value), ::testing::IsEmpty());
     }
 

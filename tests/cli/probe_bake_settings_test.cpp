@@ -1,19 +1,21 @@
-// What a probe file tells of the settings of its bake, and what its reports say of figures that are not known.
+// What a probe file tells of the settings of its bake, and what its reports say of figures that are not
+// known.
 #include "cli/probe_bake_fixture.hpp"
 
 namespace pfvox::test {
 namespace {
 
+using nlohmann::json;
 using ::testing::HasSubstr;
 using ::testing::Not;
-using nlohmann::json;
 
 class ProbeBakeFigures : public ProbeBakeScene {
   protected:
     void SetUp() override {
         ProbeBakeScene::SetUp();
         writeScene("scene.toml", "box.pf_vox",
-                   std::string(kGrid) + "[[cameras]]\nname = \"front\"\nposition = [0.6, 1.2, 3]\ntarget = [0.6, 0.3, 0.6]\n");
+                   std::string(kGrid) +
+                       "[[cameras]]\nname = \"front\"\nposition = [0.6, 1.2, 3]\ntarget = [0.6, 0.3, 0.6]\n");
     }
 
     /// The line of bake --json.
@@ -33,13 +35,15 @@ class ProbeBakeFigures : public ProbeBakeScene {
 /// --bounces 0 was stored as "no limit", and verify took it so.
 TEST_F(ProbeBakeFigures, NoBounceIsNotNoLimit) {
     const auto meanReference = [&](const char* name) {
-        return json::parse(run({"verify", "--json", "scene.toml", name, "--size", "24x16", "--samples", "64"}).out)["all"]["meanReference"]
+        return json::parse(run({"verify", "--json", "scene.toml", name, "--size", "24x16", "--samples", "64"})
+                               .out)["all"]["meanReference"]
             .get<double>();
     };
     // A gap between two boxes, whose walls light each other.
     writePfVox(folder / "box.pf_vox", boxAsset({{0, 0, 0}, {12, 6, 12}}, 0.1, {{0, 0, 0}, {15, 0, 0}}));
     writeScene("scene.toml", "box.pf_vox",
-               std::string(kGrid) + "[[cameras]]\nname = \"gap\"\nposition = [1.35, 1.4, 1.6]\ntarget = [1.35, 0.1, 0.6]\n");
+               std::string(kGrid) +
+                   "[[cameras]]\nname = \"gap\"\nposition = [1.35, 1.4, 1.6]\ntarget = [1.35, 0.1, 0.6]\n");
     bake("none.pf_probe", {"--samples", "32", "--bounces", "0"});
     bake("all.pf_probe", {"--samples", "32"});
     EXPECT_EQ(info("none.pf_probe")["settings"]["maxBounces"], 0);
@@ -69,11 +73,14 @@ TEST_F(ProbeBakeFigures, ShardsOfOtherSettingsDoNotMerge) {
         std::string first;
         std::string second;
     };
-    for (const Case& it : {Case{{"--samples", "32", "--bounces", "4"}, "--bounces 2", "--bounces 4"},
-                           Case{{"--samples", "32", "--bounces", "2", "--no-relocate"}, "--relocate", "--no-relocate"},
-                           Case{{"--samples", "32", "--bounces", "2", "--no-filter"}, "--filter (revision ", "--no-filter"},
-                           Case{{"--samples", "48", "--bounces", "2"}, "least samples 32, most samples 32", "least samples 48, most samples 48"},
-                           Case{{"--bounces", "2", "--noise", "0.9", "--max-samples", "32"}, "--noise 0", "--noise 0.9"}}) {
+    for (const Case& it :
+         {Case{{"--samples", "32", "--bounces", "4"}, "--bounces 2", "--bounces 4"},
+          Case{{"--samples", "32", "--bounces", "2", "--no-relocate"}, "--relocate", "--no-relocate"},
+          Case{{"--samples", "32", "--bounces", "2", "--no-filter"}, "--filter (revision ", "--no-filter"},
+          Case{{"--samples", "48", "--bounces", "2"},
+               "least samples 32, most samples 32",
+               "least samples 48, most samples 48"},
+          Case{{"--bounces", "2", "--noise", "0.9", "--max-samples", "32"}, "--noise 0", "--noise 0.9"}}) {
         std::vector<std::string> options = it.options;
         options.insert(options.end(), {"--probes", "9:18"});
         bake("b.pf_probe", options);
@@ -93,11 +100,11 @@ TEST_F(ProbeBakeFigures, NoiseOfOneBatchIsUnknown) {
     expectSchema("bake", report);
     EXPECT_TRUE(report["meanError"].is_null());
     EXPECT_TRUE(report["maxError"].is_null());
-    EXPECT_TRUE(report["cappedTileShare"].is_null()) << "every tile stopped where it was told to";
+    EXPECT_TRUE(report["noisyTileFraction"].is_null()) << "every tile stopped where it was told to";
     for (const json& probe : info("a.pf_probe")["probes"]) EXPECT_TRUE(probe["error"].is_null());
     EXPECT_THAT(run({"info", "a.pf_probe"}).out, HasSubstr("unknown"));
-    const ProcessResult text = run(
-        {"scene.toml", "-o", "b.pf_probe", "--resolution", "16,8,4,6", "--samples", "16"});
+    const ProcessResult text =
+        run({"scene.toml", "-o", "b.pf_probe", "--resolution", "16,8,4,6", "--samples", "16"});
     EXPECT_THAT(text.out, HasSubstr("16.0 paths a texel, noise unknown\n"));
     EXPECT_EQ(run({"validate", "a.pf_probe"}).exitCode, 0);
 
@@ -105,7 +112,7 @@ TEST_F(ProbeBakeFigures, NoiseOfOneBatchIsUnknown) {
     EXPECT_GT(known["meanError"], 0.0);
     EXPECT_GE(known["maxError"], known["meanError"]);
     const json adaptive = bake("d.pf_probe", {"--noise", "0.9", "--max-samples", "32"});
-    EXPECT_TRUE(adaptive["cappedTileShare"].is_number());
+    EXPECT_TRUE(adaptive["noisyTileFraction"].is_number());
 }
 
 /// "9 active, 9 of them relocated" of the bake was "0 active, 9 relocated" of info.
@@ -113,7 +120,8 @@ TEST_F(ProbeBakeFigures, BakeAndInfoCountAlike) {
     const json report = bake("a.pf_probe", {"--samples", "16"});
     const json states = info("a.pf_probe")["states"];
     EXPECT_GT(report["relocated"], 0);
-    for (const char* state : {"active", "relocated", "inactive"}) EXPECT_EQ(states[state], report[state]) << state;
+    for (const char* state : {"active", "relocated", "inactive"})
+        EXPECT_EQ(states[state], report[state]) << state;
     EXPECT_EQ(report["active"].get<int>() + report["inactive"].get<int>(), report["probes"].get<int>());
 }
 

@@ -6,8 +6,8 @@
 namespace pfvox::test {
 namespace {
 
-using ::testing::HasSubstr;
 using nlohmann::json;
+using ::testing::HasSubstr;
 
 TEST_F(ProbeBake, InfoTellsWhatProbesSee) {
     write("a.pf_probe", probeField(probeInfo()));
@@ -36,16 +36,18 @@ TEST_F(ProbeBake, InfoMeansAreOverWhatIsSeen) {
     ProbeField field{.info = info, .probes = {{}}, .proximity = {}};
     ProbeData& probe = field.probes[0];
     for (std::uint32_t i = 0; i < 32 * 32; ++i)
-        probe.depthNormal.push_back(i < 32 * 16 ? kDepthMissCode : packDepthNormal(coder.encode(2.0f), {0, 1, 0}));
+        probe.depthNormal.push_back(i < 32 * 16 ? kDepthMissCode
+                                                : packDepthNormal(coder.encode(2.0f), {0, 1, 0}));
     probe.minDepth.assign(4, 0);
     for (std::uint32_t i = 0; i < 4; ++i)
         probe.minDepth[i] = static_cast<std::uint16_t>(i < 2 ? kDepthMissCode : coder.encode(2.0f));
-    for (std::uint32_t i = 0; i < 16 * 16; ++i) probe.light.push_back(i < 16 * 8 ? 0 : packLight({0.5f, 1.0f, 2.0f}));
+    for (std::uint32_t i = 0; i < 16 * 16; ++i)
+        probe.light.push_back(i < 16 * 8 ? 0 : packLight({0.5f, 1.0f, 2.0f}));
     write("a.pf_probe", field);
     const ProcessResult result = run({"info", "--json", "a.pf_probe"});
     ASSERT_EQ(result.exitCode, 0) << result.err;
     const json counted = json::parse(result.out)["probes"][0];
-    EXPECT_NEAR(counted["missShare"], 0.5, 1e-6);
+    EXPECT_NEAR(counted["missFraction"], 0.5, 1e-6);
     EXPECT_NEAR(counted["meanIndirect"][0], 0.5, 1e-6);
     EXPECT_NEAR(counted["meanIndirect"][2], 2.0, 1e-6);
     EXPECT_NEAR(counted["maxIndirect"], 2.0, 1e-6);
@@ -80,7 +82,8 @@ TEST_F(ProbeBake, InfoOfSomethingElseFails) {
     writeText(folder / "a.pf_probe", "no probe file at all, but long enough to hold a header of one");
     EXPECT_EQ(run({"info", "a.pf_probe"}).exitCode, 4);
     EXPECT_EQ(run({"info", "absent.pf_probe"}).exitCode, 3);
-    std::filesystem::copy_file(std::filesystem::path(PFVOX_TESTS_DIR) / "golden/data/v1_0.pf_vox", folder / "b.pf_probe");
+    std::filesystem::copy_file(std::filesystem::path(PFVOX_TESTS_DIR) / "golden/data/v1_0.pf_vox",
+                               folder / "b.pf_probe");
     EXPECT_THAT(run({"info", "b.pf_probe"}).err, HasSubstr("but PF_VOX, which vox2pf reads"));
 }
 
@@ -149,7 +152,7 @@ TEST_F(ProbeBake, CompareDoesNotPraiseWhatItDidNotSee) {
     ASSERT_EQ(none.exitCode, 0) << none.err;
     const json difference = json::parse(none.out);
     expectSchema("probe-compare", difference);
-    EXPECT_TRUE(difference["layers"][0]["withinOneShare"].is_null());
+    EXPECT_TRUE(difference["layers"][0]["withinOneFraction"].is_null());
     EXPECT_THAT(run({"compare", "a.pf_probe", "none.pf_probe"}).out, ::testing::Not(HasSubstr("100.000 %")));
     for (const char* limit : {"--min-psnr", "--min-depth-within-one"}) {
         const ProcessResult asked = run({"compare", limit, "1", "a.pf_probe", "none.pf_probe"});
@@ -178,7 +181,8 @@ TEST_F(ProbeBake, MergeGivesTheWhole) {
     write("whole.pf_probe", field);
     writeShard("s1.pf_probe", field, {0, 5});
     writeShard("s2.pf_probe", field, {5, 12});
-    const ProcessResult result = run({"merge", "--json", "s2.pf_probe", "s1.pf_probe", "-o", "merged.pf_probe"});
+    const ProcessResult result =
+        run({"merge", "--json", "s2.pf_probe", "s1.pf_probe", "-o", "merged.pf_probe"});
     ASSERT_EQ(result.exitCode, 0) << result.err;
     expectSchema("probe-merge", json::parse(result.out));
     EXPECT_EQ(readText(folder / "merged.pf_probe"), readText(folder / "whole.pf_probe"));

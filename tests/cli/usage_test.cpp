@@ -36,12 +36,15 @@ TEST_F(Vox2pf, withoutTheModuleOpenVdbFilesGetTheRemedyAndExitCodeFive) {
     std::filesystem::copy_file(PFVOX_VOX2PF, lonely);
     addSource("a.vox");
     writeText(folder / "a.vdb", std::string(" BDV\0\0\0\0\xe0\0\0\0", 12));
-    const ProcessResult vdb = runProcess({lonely.string(), "a.vdb", "-o", "a.pf_vox"}, {.folder = folder.path()});
+    const ProcessResult vdb =
+        runProcess({lonely.string(), "a.vdb", "-o", "a.pf_vox"}, {.folder = folder.path()});
     EXPECT_EQ(vdb.exitCode, 5);
     EXPECT_THAT(vdb.err, AllOf(HasSubstr("a.vdb"), HasSubstr("module"), HasSubstr("install")));
     EXPECT_FALSE(exists("a.pf_vox"));
-    EXPECT_EQ(runProcess({lonely.string(), "a.vox", "-o", "a.pf_vox"}, {.folder = folder.path()}).exitCode, 0);
-    EXPECT_EQ(run({"a.vdb", "-o", "b.pf_vox"}).exitCode, 4) << "with its module it reads the file, which is broken";
+    EXPECT_EQ(runProcess({lonely.string(), "a.vox", "-o", "a.pf_vox"}, {.folder = folder.path()}).exitCode,
+              0);
+    EXPECT_EQ(run({"a.vdb", "-o", "b.pf_vox"}).exitCode, 4)
+        << "with its module it reads the file, which is broken";
 }
 
 TEST_F(Vox2pf, withoutArgumentsHelpGoesToStderr) {
@@ -150,8 +153,9 @@ TEST_F(Vox2pf, outputThatIsAnotherFileIsRefusedAsSuch) {
 TEST_F(Vox2pf, resultsThatCannotBeWrittenAreAFailure) {
     addSource("a.vox");
     ASSERT_EQ(run({"a.vox", "-o", "a.pf_vox"}).exitCode, 0);
-    const ProcessResult result = runProcess({"/bin/sh", "-c", "exec \"$0\" info --json a.pf_vox > /dev/full", PFVOX_VOX2PF},
-                                            {.environment = {}, .input = {}, .folder = folder.path()});
+    const ProcessResult result =
+        runProcess({"/bin/sh", "-c", "exec \"$0\" info --json a.pf_vox > /dev/full", PFVOX_VOX2PF},
+                   {.environment = {}, .input = {}, .folder = folder.path()});
     EXPECT_EQ(result.exitCode, 3);
     EXPECT_THAT(result.err, HasSubstr("standard output"));
 }
@@ -165,9 +169,11 @@ TEST_F(Vox2pf, aFolderThatCannotBeSearchedIsNamedAndTheOthersAreConverted) {
     std::vector<std::string> command{PFVOX_VOX2PF, "assets", "-o", "out", "--json"};
     if (::geteuid() == 0) {  // who may search everything
         fs::permissions(folder.path(), fs::perms::all);
-        command.insert(command.begin(), {"/usr/bin/setpriv", "--reuid=65534", "--regid=65534", "--clear-groups"});
+        command.insert(command.begin(),
+                       {"/usr/bin/setpriv", "--reuid=65534", "--regid=65534", "--clear-groups"});
     }
-    const ProcessResult result = runProcess(command, {.environment = {}, .input = {}, .folder = folder.path()});
+    const ProcessResult result =
+        runProcess(command, {.environment = {}, .input = {}, .folder = folder.path()});
     fs::permissions(folder / "assets/locked", fs::perms::owner_all);
     EXPECT_EQ(result.exitCode, 1);
     EXPECT_THAT(result.err, HasSubstr("assets/locked: cannot search this folder"));
@@ -227,12 +233,14 @@ TEST_F(LimitedVox2pf, whereOpenVdbHasTooFewThreadsTheRemedyIsNamed) {
 TEST_F(LimitedVox2pf, whereMemoryIsLittleItIsSaidOrTakenLessOf) {
     const ProcessResult result = limited("ulimit -v 100000", "in -o out -j 16");
     EXPECT_THAT(result.exitCode, ::testing::AnyOf(0, 1, 4)) << result.err;
-    EXPECT_TRUE(result.exitCode == 0 || result.err.find("not enough memory") != std::string::npos) << result.err;
+    EXPECT_TRUE(result.exitCode == 0 || result.err.find("not enough memory") != std::string::npos)
+        << result.err;
 }
 #endif
 
 TEST_F(Vox2pf, filesOfOtherKindsGetTheCommandThatReadsThem) {
-    writeText(folder / "old.pf_vox", "what the thesis program wrote, long enough for a header of 64 bytes and more");
+    writeText(folder / "old.pf_vox",
+              "what the thesis program wrote, long enough for a header of 64 bytes and more");
     EXPECT_THAT(run({"info", "old.pf_vox"}).err, HasSubstr("vox2pf old.pf_vox -o converted/"));
     writeText(folder / "a.pf_probe", "probes, or what is called so");
     EXPECT_THAT(run({"info", "a.pf_probe"}).err, HasSubstr("probe-bake info a.pf_probe"));

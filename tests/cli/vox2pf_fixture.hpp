@@ -32,7 +32,7 @@ class Vox2pf : public ::testing::Test {
         return target;
     }
 
-    /// Changes the colour of every voxel value: byte `fromEnd` before the end of the palette.
+    /// Changes the color of every voxel value: byte `fromEnd` before the end of the palette.
     static void changeOneByte(const std::filesystem::path& file) {
         std::string bytes = readText(file);
         const std::size_t palette = bytes.find("RGBA");

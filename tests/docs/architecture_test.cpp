@@ -13,12 +13,14 @@ namespace pfvox::test {
 namespace {
 
 using ::testing::ContainerEq;
-using ::testing::SizeIs;
 using ::testing::Gt;
 using ::testing::HasSubstr;
+using ::testing::SizeIs;
 using Arrows = std::set<std::string>;
 
-std::string architecture() { return readText(kProjectDir / "docs/architecture.md"); }
+std::string architecture() {
+    return readText(kProjectDir / "docs/architecture.md");
+}
 
 /// "a --> b" of the diagram under this heading.
 Arrows arrowsUnder(const std::string& heading) {

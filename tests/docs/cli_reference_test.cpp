@@ -102,7 +102,8 @@ TEST(CliReference, NamesNoOptionThatIsGone) {
 TEST(CliReference, ListsEveryCommand) {
     for (const ToolCommand& it : everyCommand()) {
         if (it.command.empty()) continue;
-        EXPECT_TRUE(std::regex_search(reference(), std::regex("\n    " + it.tool + " \\[?" + it.command + "\\]? ")))
+        EXPECT_TRUE(
+            std::regex_search(reference(), std::regex("\n    " + it.tool + " \\[?" + it.command + "\\]? ")))
             << it.tool << ' ' << it.command;
     }
 }

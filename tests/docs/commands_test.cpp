@@ -1,5 +1,5 @@
-// Every command that the documents show is run, in their order, with the built tools and the demo data; or it stands in
-// excluded_commands.txt with the reason why not.
+// Every command that the documents show is run, in their order, with the built tools and the demo data; or it
+// stands in excluded_commands.txt with the reason why not.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -22,8 +22,8 @@ struct DocCommand {
     std::string line;
 };
 
-/// In an indented block or a fence without a language a line is a command when it begins with one of our programs or one that
-/// builds them.
+/// In an indented block or a fence without a language a line is a command when it begins with one of our
+/// programs or one that builds them.
 bool looksLikeCommand(const std::string& line) {
     static const std::regex kStart(
         R"(^([A-Z_]+=\S* )*(\./)?(vox2pf|probe-bake|pfview|cmake|ctest|ninja|make|git|cd|sudo|apt-get|apt|export|sbatch|scontrol|man|mkdir|(scripts|bench|examples|build)/\S+)(\s.*)?$)");
@@ -87,11 +87,13 @@ std::vector<Exclusion> exclusions() {
 class Workplace {
   public:
     Workplace() {
-        for (const char* const name : {"data", "examples"}) fs::copy(kProjectDir / name, folder_ / name, fs::copy_options::recursive);
+        for (const char* const name : {"data", "examples"})
+            fs::copy(kProjectDir / name, folder_ / name, fs::copy_options::recursive);
         // The demo scene with few probes: CI bakes on the CPU.
         std::string scene = readText(folder_ / "data/scene.toml");
         scene = std::regex_replace(scene, std::regex("probeGridStep = [^\n]*"), "probeGridStep = 6.0");
-        scene = std::regex_replace(scene, std::regex("probeGridCount = [^\n]*"), "probeGridCount = [2, 2, 2]");
+        scene =
+            std::regex_replace(scene, std::regex("probeGridCount = [^\n]*"), "probeGridCount = [2, 2, 2]");
         writeText(folder_ / "data/scene.toml", scene);
         fs::copy_file(folder_ / "data/courtyard.vox", folder_ / "castle.vox");
         fs::create_directories(folder_ / "assets/props");
@@ -101,7 +103,8 @@ class Workplace {
     }
 
     ProcessResult run(const std::string& line) const {
-        const std::string path = "PATH=" + (folder_ / "build/release/bin").string() + ":/usr/local/bin:/usr/bin:/bin";
+        const std::string path =
+            "PATH=" + (folder_ / "build/release/bin").string() + ":/usr/local/bin:/usr/bin:/bin";
         return runProcess({"/usr/bin/env", path, "/bin/bash", "-euo", "pipefail", "-c", line},
                           {.environment = {}, .input = {}, .folder = folder_.path()});
     }
@@ -110,13 +113,15 @@ class Workplace {
     void addTools() const {
         const fs::path bin = folder_ / "build/release/bin";
         fs::create_directories(bin);
-        for (const auto& entry : fs::directory_iterator(PFVOX_TOOLS_DIR)) fs::create_symlink(entry.path(), bin / entry.path().filename());
+        for (const auto& entry : fs::directory_iterator(PFVOX_TOOLS_DIR))
+            fs::create_symlink(entry.path(), bin / entry.path().filename());
         if (!fs::exists(bin / "probe-bake")) return;
         // With small maps and few samples, for the same reason as above.
         fs::remove(bin / "probe-bake");
         writeText(bin / "probe-bake",
                   "#!/bin/sh\ncase \"$1\" in info|validate|compare|merge|verify) ;;\n"
-                  "*) set -- \"$@\" --resolution 16,8,4,6 --samples 16 ;;\nesac\nexec " PFVOX_TOOLS_DIR "/probe-bake \"$@\"\n");
+                  "*) set -- \"$@\" --resolution 16,8,4,6 --samples 16 ;;\nesac\nexec " PFVOX_TOOLS_DIR
+                  "/probe-bake \"$@\"\n");
         fs::permissions(bin / "probe-bake", fs::perms::owner_all);
     }
 
@@ -133,18 +138,21 @@ TEST(DocumentCommands, AreRunOrExcludedWithAReason) {
     for (const fs::path& document : documents()) {
         for (const DocCommand& command : commandsIn(document)) {
             const auto exclusion = std::ranges::find_if(excluded, [&](const Exclusion& candidate) {
-                return candidate.document == document.generic_string() && std::regex_match(command.line, candidate.line);
+                return candidate.document == document.generic_string() &&
+                       std::regex_match(command.line, candidate.line);
             });
             if (exclusion != excluded.end()) {
                 exclusion->isUsed = true;
                 continue;
             }
             const ProcessResult result = workplace.run(command.line);
-            EXPECT_EQ(result.exitCode, 0) << command.place << ": " << command.line << "\n" << result.out << result.err;
+            EXPECT_EQ(result.exitCode, 0) << command.place << ": " << command.line << "\n"
+                                          << result.out << result.err;
             ++runs[document.generic_string()];
         }
     }
-    for (const Exclusion& exclusion : excluded) EXPECT_TRUE(exclusion.isUsed) << "no such command any more: " << exclusion.text;
+    for (const Exclusion& exclusion : excluded)
+        EXPECT_TRUE(exclusion.isUsed) << "no such command any more: " << exclusion.text;
     EXPECT_GE(runs["README.md"], 7) << "the reading of README.md is broken, or it lost its commands";
 }
 

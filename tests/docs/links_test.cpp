@@ -21,7 +21,8 @@ TEST(DocumentLinks, LeadToFiles) {
         for (std::sregex_iterator link(text.begin(), text.end(), kLink), end; link != end; ++link) {
             const std::string target = (*link)[1];
             if (target.find("://") != std::string::npos) continue;
-            EXPECT_TRUE(fs::exists(kProjectDir / document.parent_path() / target)) << document << " links to " << target;
+            EXPECT_TRUE(fs::exists(kProjectDir / document.parent_path() / target))
+                << document << " links to " << target;
         }
     }
 }

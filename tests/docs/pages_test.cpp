@@ -19,7 +19,9 @@ std::filesystem::path pageOf(const std::string& tool, const std::string& kind) {
     return kPages / "fish" / (tool + ".fish");
 }
 
-std::string page(const std::string& tool, const std::string& kind) { return readText(pageOf(tool, kind)); }
+std::string page(const std::string& tool, const std::string& kind) {
+    return readText(pageOf(tool, kind));
+}
 
 std::string withoutBackslashes(std::string text) {
     std::erase(text, '\\');
@@ -29,7 +31,8 @@ std::string withoutBackslashes(std::string text) {
 /// The part of a text from `begin` to the next `end`, or to its end.
 std::string partOf(const std::string& text, const std::string& begin, const std::string& end) {
     const std::size_t from = text.find(begin);
-    return from == std::string::npos ? std::string() : text.substr(from, text.find(end, from + begin.size()) - from);
+    return from == std::string::npos ? std::string()
+                                     : text.substr(from, text.find(end, from + begin.size()) - from);
 }
 
 /// What a program says to the page; it must be content.
@@ -44,11 +47,13 @@ void expectClean(const std::vector<std::string>& arguments) {
 TEST(ToolPages, AreWhatTheProgramsWrite) {
     for (const std::string& tool : builtTools()) {
         for (const std::string kind : {"man", "bash", "zsh", "fish"}) {
-            const ProcessResult result = runProcess({std::string(PFVOX_TOOLS_DIR) + "/" + tool, "--generate", kind}, {});
+            const ProcessResult result =
+                runProcess({std::string(PFVOX_TOOLS_DIR) + "/" + tool, "--generate", kind}, {});
             EXPECT_EQ(result.exitCode, 0);
             EXPECT_EQ(result.out, page(tool, kind)) << tool << ' ' << kind;
         }
-        EXPECT_EQ(runProcess({std::string(PFVOX_TOOLS_DIR) + "/" + tool, "--generate", "csh"}, {}).exitCode, 2);
+        EXPECT_EQ(runProcess({std::string(PFVOX_TOOLS_DIR) + "/" + tool, "--generate", "csh"}, {}).exitCode,
+                  2);
         EXPECT_THAT(help({tool, {}}), Not(HasSubstr("--generate"))) << "it is for the build";
     }
 }
@@ -58,18 +63,22 @@ TEST(ToolPages, NameEveryOptionOfTheHelpPages) {
         const std::set<std::string> options = optionsIn(help(it));
         ASSERT_THAT(options, Contains("--help"));
         const std::string man = withoutBackslashes(page(it.tool, "man"));
-        const std::string own = it.command.empty() ? man : partOf(man, ".SS " + it.tool + " " + it.command, "\n.S");
+        const std::string own =
+            it.command.empty() ? man : partOf(man, ".SS " + it.tool + " " + it.command, "\n.S");
         const std::string common = partOf(man, ".SH OPTIONS OF ALL COMMANDS", "\n.SH");
         const std::string function = "_" + (it.command.empty() ? it.tool : it.command) + "() {";
-        const std::string bash = partOf(page(it.tool, "bash"), "    " + (it.command.empty() ? it.tool : it.command) + ")\n", ";;");
+        const std::string bash =
+            partOf(page(it.tool, "bash"), "    " + (it.command.empty() ? it.tool : it.command) + ")\n", ";;");
         const std::string zsh = partOf(page(it.tool, "zsh"), function, "\n}");
         for (const std::string& option : options) {
             const std::string tag = "fB" + option + "fR";
             EXPECT_TRUE(own.find(tag) != std::string::npos || common.find(tag) != std::string::npos)
                 << option << " in the man page";
             const bool isLong = option.starts_with("--");
-            EXPECT_THAT(page(it.tool, "fish"), HasSubstr(isLong ? " -l " + option.substr(2) : " -s " + option.substr(1)));
-            if (it.command.empty() && !commandsIn(help(it)).empty()) continue;  // those of the tool itself: below
+            EXPECT_THAT(page(it.tool, "fish"),
+                        HasSubstr(isLong ? " -l " + option.substr(2) : " -s " + option.substr(1)));
+            if (it.command.empty() && !commandsIn(help(it)).empty())
+                continue;  // those of the tool itself: below
             EXPECT_THAT(bash + ' ', HasSubstr(' ' + option)) << it.command;
             EXPECT_THAT(zsh, HasSubstr("'*" + option)) << it.command;
         }
@@ -83,7 +92,8 @@ TEST(ToolPages, ManPagesAreClean) {
         if (isInstalled("groff")) expectClean({"man", "--warnings", "-l", file});
         EXPECT_THAT(readText(file), HasSubstr(".SH EXIT STATUS"));
     }
-    if (!isInstalled("mandoc") && !isInstalled("groff")) GTEST_SKIP() << "neither mandoc nor groff here (Debian: mandoc)";
+    if (!isInstalled("mandoc") && !isInstalled("groff"))
+        GTEST_SKIP() << "neither mandoc nor groff here (Debian: mandoc)";
 }
 
 TEST(ToolPages, ShellsCanReadTheirCompletion) {
@@ -106,7 +116,8 @@ class Completion : public ::testing::Test {
   protected:
     void SetUp() override {
         std::filesystem::create_directories(folder / "assets");
-        for (const char* const name : {"a.vox", "b b.pf_vox", "c.pf_probe", "scene.toml", "notes.txt", "d.png"})
+        for (const char* const name :
+             {"a.vox", "b b.pf_vox", "c.pf_probe", "scene.toml", "notes.txt", "d.png"})
             writeText(folder / name, "");
     }
 
@@ -123,7 +134,8 @@ class Completion : public ::testing::Test {
         return linesOf(arguments);
     }
     std::multiset<std::string> fish(const std::string& line) const {
-        return linesOf({"fish", "-c", "source $argv[1]; complete -C $argv[2] | string replace -r '\\t.*' ''; true",
+        return linesOf({"fish", "-c",
+                        "source $argv[1]; complete -C $argv[2] | string replace -r '\\t.*' ''; true",
                         pageOf(line.substr(0, line.find(' ')), "fish").string(), line});
     }
 
@@ -131,8 +143,9 @@ class Completion : public ::testing::Test {
 
   private:
     std::multiset<std::string> linesOf(const std::vector<std::string>& arguments) const {
-        const ProcessResult result =
-            runInstalled(arguments, {.environment = {"HOME=" + folder.path().string()}, .input = {}, .folder = folder.path()});
+        const ProcessResult result = runInstalled(
+            arguments,
+            {.environment = {"HOME=" + folder.path().string()}, .input = {}, .folder = folder.path()});
         EXPECT_EQ(result.exitCode, 0) << result.err;
         EXPECT_THAT(result.err, IsEmpty());
         std::istringstream in(result.out);
@@ -168,14 +181,18 @@ TEST_F(Completion, BashOffersValuesThatAreKnownWords) {
 TEST_F(Completion, BashKnowsTheOtherTools) {
     for (const std::string& tool : builtTools()) {
         if (tool == "pfview") {
-            EXPECT_THAT(bash({"pfview", ""}), UnorderedElementsAre("assets", "b b.pf_vox", "c.pf_probe", "scene.toml"));
-            EXPECT_THAT(bash({"pfview", "scene.toml", "--screenshot", ""}), UnorderedElementsAre("assets", "d.png"));
+            EXPECT_THAT(bash({"pfview", ""}),
+                        UnorderedElementsAre("assets", "b b.pf_vox", "c.pf_probe", "scene.toml"));
+            EXPECT_THAT(bash({"pfview", "scene.toml", "--screenshot", ""}),
+                        UnorderedElementsAre("assets", "d.png"));
             EXPECT_THAT(bash({"pfview", "scene.toml", "--view", "nor"}), UnorderedElementsAre("normals"));
         } else if (tool == "probe-bake") {
             EXPECT_THAT(bash({"probe-bake", "verify", ""}),
                         UnorderedElementsAre("assets", "b b.pf_vox", "c.pf_probe", "scene.toml"));
-            EXPECT_THAT(bash({"probe-bake", "verify", "-o", ""}), UnorderedElementsAre("assets")) << "a folder";
-            EXPECT_THAT(bash({"probe-bake", "scene.toml", "--profile", "th"}), UnorderedElementsAre("thesis"));
+            EXPECT_THAT(bash({"probe-bake", "verify", "-o", ""}), UnorderedElementsAre("assets"))
+                << "a folder";
+            EXPECT_THAT(bash({"probe-bake", "scene.toml", "--profile", "th"}),
+                        UnorderedElementsAre("thesis"));
             EXPECT_THAT(bash({"probe-bake", "comp"}), UnorderedElementsAre("compare"));
         }
     }
@@ -193,11 +210,13 @@ TEST_F(Completion, FishOffersCommandsOptionsAndWords) {
 TEST_F(Completion, ZshCompletesCommandsOptionsWordsAndFiles) {
     if (!isInstalled("zsh")) GTEST_SKIP() << "no zsh here (Debian: zsh)";
     const std::filesystem::path script = std::filesystem::path(PFVOX_TESTS_DIR) / "docs/zsh_completion.zsh";
-    std::vector<std::string> arguments{"timeout", "60", "zsh", "-f", script.string(), (kPages / "zsh").string()};
+    std::vector<std::string> arguments{
+        "timeout", "60", "zsh", "-f", script.string(), (kPages / "zsh").string()};
     // What is wanted is more than what was typed: the terminal shows that, too.
-    const std::vector<std::string> steps{"vox2pf exp",         "export",     "vox2pf info --js",       "--json",
-                                         "vox2pf info b",      "b.pf_vox",     "vox2pf a.vox --profile r", "resident",
-                                         "vox2pf sc",          "scene.toml", "vox2pf a.vox --holl",     "--hollow"};
+    const std::vector<std::string> steps{
+        "vox2pf exp",    "export",     "vox2pf info --js",         "--json",
+        "vox2pf info b", "b.pf_vox",   "vox2pf a.vox --profile r", "resident",
+        "vox2pf sc",     "scene.toml", "vox2pf a.vox --holl",      "--hollow"};
     arguments.insert(arguments.end(), steps.begin(), steps.end());
     const ProcessResult result =
         runInstalled(arguments, {.environment = {"TERM=dumb"}, .input = {}, .folder = folder.path()});

@@ -37,7 +37,7 @@ TEST(DocumentTables, AreThoseOfTheirResults) {
 
 constexpr const char* kRow =
     R"({"scene":"hall","profile":"default","fileBytes":12345678,"bake":{"totalMs":17400.0,"meanSamples":256.0},"verify":{"camera":"door",)"
-    R"("tierShares":{"texels":0.9991},"reference":{"samples":16384,"isCertain":false},"all":{"relativeRmse":0.138,)"
+    R"("tierFractions":{"texels":0.9991},"reference":{"samples":16384,"isCertain":false},"all":{"relativeRmse":0.138,)"
     R"("relativeTrimmedRmse":0.071,"relativeNoise":0.049,"relativeError":0.13},"byTier":{"texels":{"relativeError":0.129}},)"
     R"("psnrDecibel":30.6,"meanFlip":0.052,"noiseFlip":0.036}})";
 

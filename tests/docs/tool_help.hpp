@@ -22,7 +22,9 @@ struct ToolCommand {
     std::string command;  ///< empty = the tool itself
 };
 
-inline void PrintTo(const ToolCommand& it, std::ostream* out) { *out << it.tool << ' ' << it.command; }
+inline void PrintTo(const ToolCommand& it, std::ostream* out) {
+    *out << it.tool << ' ' << it.command;
+}
 
 inline std::string help(const ToolCommand& it) {
     std::vector<std::string> arguments{std::string(PFVOX_TOOLS_DIR) + "/" + it.tool};

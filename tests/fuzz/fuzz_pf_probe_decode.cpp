@@ -1,5 +1,5 @@
-// Any bytes as a PF_PROBE file: once as they are, and once as the changes to make behind the repaired hashes of a small
-// valid file.
+// Any bytes as a PF_PROBE file: once as they are, and once as the changes to make behind the repaired hashes
+// of a small valid file.
 #include <cstdlib>
 
 #include "support/pf_probe_surgery.hpp"

@@ -1,5 +1,5 @@
-// Any bytes as a PF_VOX file. Hashes would stop nearly every mutation at the door, so the bytes are taken once as they are
-// and once as the changes to make behind the repaired hashes of a small valid file.
+// Any bytes as a PF_VOX file. Hashes would stop nearly every mutation at the door, so the bytes are taken
+// once as they are and once as the changes to make behind the repaired hashes of a small valid file.
 #include <pfvox/pf_vox.hpp>
 
 #include "support/pf_vox_surgery.hpp"
@@ -14,7 +14,8 @@ void decode(std::span<const std::byte> bytes) {
     const auto asset = decodePfVox(bytes, Limits{.maxMemoryBytes = 64 << 20}, diagnostics);
     if (!asset) return;
     // Whatever was accepted can be walked and written again.
-    for (const OctreeModel& model : asset->models) static_cast<void>(statistics(model, asset->materials.size()));
+    for (const OctreeModel& model : asset->models)
+        static_cast<void>(statistics(model, asset->materials.size()));
     if (!encodePfVox(*asset, {})) std::abort();
 }
 

@@ -1,4 +1,5 @@
-// Runs a fuzz target on every file of the folders given: seeds and past findings, in builds without libFuzzer.
+// Runs a fuzz target on every file of the folders given: seeds and past findings, in builds without
+// libFuzzer.
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>

@@ -17,11 +17,15 @@ struct Golden {
     ProbeFieldInfo info;
     bool withProximity;
 
-    std::filesystem::path file() const { return std::filesystem::path(PFVOX_TESTS_DIR) / "golden/data" / name; }
+    std::filesystem::path file() const {
+        return std::filesystem::path(PFVOX_TESTS_DIR) / "golden/data" / name;
+    }
     ProbeField field() const { return test::probeField(info, withProximity); }
 };
 
-void PrintTo(const Golden& golden, std::ostream* out) { *out << golden.name; }
+void PrintTo(const Golden& golden, std::ostream* out) {
+    *out << golden.name;
+}
 
 ProbeFieldInfo shardInfo() {
     ProbeFieldInfo info = test::probeInfo({70000, 1, 1}, {0, 0, 3, 0});
@@ -35,7 +39,7 @@ class PfProbeGolden : public testing::TestWithParam<Golden> {};
 ProbeFieldInfo ofVersion1_0(ProbeFieldInfo info) {
     const ProbeBakeSettings& s = info.settings;
     info.settings = {.seed = s.seed,
-                     .tracedEdge = s.tracedEdge,
+                     .tracedResolution = s.tracedResolution,
                      .minSamples = s.minSamples,
                      .maxSamples = s.maxSamples,
                      .maxBounces = s.maxBounces,

@@ -51,9 +51,9 @@ std::vector<Box> randomBoxes(std::size_t count) {
     Random random(7);
     std::vector<Box> boxes(count);
     for (Box& box : boxes) {
-        const glm::vec3 centre(random.uniform(-50, 50), random.uniform(-5, 5), random.uniform(-50, 50));
+        const glm::vec3 center(random.uniform(-50, 50), random.uniform(-5, 5), random.uniform(-50, 50));
         const glm::vec3 half(random.uniform(0.1, 2), random.uniform(0.1, 2), random.uniform(0.1, 2));
-        box = {.min = centre - half, .max = centre + half};
+        box = {.min = center - half, .max = center + half};
     }
     return boxes;
 }

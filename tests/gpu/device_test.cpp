@@ -86,7 +86,8 @@ TEST_F(DeviceTest, ValidationMessagesAreCollected) {
     // A device of its own: the one of the fixture has to stay silent.
     PFVOX_ASSERT_VALUE(gpu::Device, watched, gpu::Device::open({.validation = true}));
     constexpr std::uint32_t kMoreThanAnyDeviceHas = 1u << 16;
-    const auto program = watched.createProgram(shaders::kLayoutCheck, kMoreThanAnyDeviceHas, "wrong on purpose");
+    const auto program =
+        watched.createProgram(shaders::kLayoutCheck, kMoreThanAnyDeviceHas, "wrong on purpose");
     EXPECT_THAT(watched.validationMessages(), Contains(HasSubstr("VUID")));
 }
 

@@ -19,7 +19,7 @@ using Answer = std::optional<ReferenceHit>;
 struct WorldBox {
     glm::dvec3 min{std::numeric_limits<double>::infinity()};
     glm::dvec3 max{-std::numeric_limits<double>::infinity()};
-    glm::dvec3 centre() const { return 0.5 * (min + max); }
+    glm::dvec3 center() const { return 0.5 * (min + max); }
     double radius() const { return 0.5 * glm::length(max - min); }
 };
 
@@ -96,7 +96,7 @@ class RayMaker {
         const Instance& instance = anyInstance();
         return instance.worldFromModel * glm::dvec4(voxelPoint(instance), 1.0);
     }
-    glm::dvec3 outside(double radii) { return box_.centre() + radii * box_.radius() * random_.direction(); }
+    glm::dvec3 outside(double radii) { return box_.center() + radii * box_.radius() * random_.direction(); }
 
     /// Lengths of directions vary: t counts in them.
     FloatRay towards(glm::dvec3 origin, glm::dvec3 target) {
@@ -204,8 +204,8 @@ class Judge {
     }
 
     double reachOf(const FloatRay& ray) const {
-        const double farEnd = glm::length(glm::dvec3(ray.origin) - box_.centre()) + box_.radius() +
-                              glm::length(box_.centre());
+        const double farEnd =
+            glm::length(glm::dvec3(ray.origin) - box_.center()) + box_.radius() + glm::length(box_.center());
         return std::max(farEnd, largestCube_);
     }
 
@@ -313,11 +313,10 @@ Comparison compare(gpu::Device& device, std::span<const gpu::ScenePart> parts, c
     counts.rays = hits.size();
     for (std::size_t i = 0; i < hits.size(); ++i) {
         counts.hits += isHit[i];
-        counts.capped += hits[i].capped ? 1u : 0u;
+        counts.stepLimitReached += hits[i].stepLimitReached ? 1u : 0u;
         counts.ties += verdicts[i] == Verdict::Tie ? 1u : 0u;
         if (verdicts[i] == Verdict::Disagreement && counts.disagreements++ == 0) {
-            counts.firstDisagreement =
-                describe(rays[i], hits[i], judge.reference(judge.exact(rays[i])));
+            counts.firstDisagreement = describe(rays[i], hits[i], judge.reference(judge.exact(rays[i])));
         }
     }
     return counts;

@@ -32,12 +32,12 @@ struct Comparison {
     std::size_t hits = 0;
     std::size_t ties = 0;
     std::size_t disagreements = 0;
-    std::size_t capped = 0;
+    std::size_t stepLimitReached = 0;
     std::string firstDisagreement;
 };
 
-/// Of the distance from the ray's origin to the far end of the scene, or of the octree cube's edge where that is more:
-/// some 16 roundings of a float.
+/// Of the distance from the ray's origin to the far end of the scene, or of the octree cube's edge where that
+/// is more: some 16 roundings of a float.
 inline constexpr double kTieDistance = 2e-6;
 
 /// Random, axis-parallel, aimed at corners and edges, from inside, grazing, and from far away.

@@ -20,7 +20,7 @@ struct Score {
     double falseMiss = 0.0;
     double unknown = 0.0;        ///< of rays that end on a surface that a probe of the field sees
     double unknownHidden = 0.0;  ///< of rays that end where no probe sees: nobody could know
-    std::uint64_t capped = 0;
+    std::uint64_t stepLimitReached = 0;
     std::uint64_t notFinite = 0;
     double probesPerRay = 0.0;
     double lowSteps = 0.0;
@@ -86,7 +86,7 @@ class FieldTraceTest : public GpuTest {
         for (std::size_t i = 0; i < rays.size(); ++i) {
             const FieldTrace& trace = traces[i];
             const float truth = room.trace(rays[i].origin, rays[i].direction).distance;
-            score.capped += trace.capped;
+            score.stepLimitReached += trace.stepLimitReached;
             score.probesPerRay += one * trace.probesAsked;
             score.lowSteps += one * trace.lowSteps;
             score.highSteps += one * trace.highSteps;
@@ -120,7 +120,7 @@ TEST_F(FieldTraceTest, FindsWhatTheRoomHoldsAt512) {
     EXPECT_LE(score.wrong, 0.005);
     EXPECT_LE(score.unknown, 0.007);
     EXPECT_EQ(score.falseMiss, 0.0);
-    EXPECT_EQ(score.capped, 0u);
+    EXPECT_EQ(score.stepLimitReached, 0u);
     EXPECT_EQ(score.notFinite, 0u);
 }
 
@@ -133,7 +133,7 @@ TEST_F(FieldTraceTest, FindsWhatTheRoomHoldsAt1024) {
     EXPECT_LE(score.wrong, 0.003);
     EXPECT_LE(score.unknown, 0.007);
     EXPECT_EQ(score.falseMiss, 0.0);
-    EXPECT_EQ(score.capped, 0u);
+    EXPECT_EQ(score.stepLimitReached, 0u);
 }
 
 /// The min maps save steps and change nothing.
@@ -181,7 +181,7 @@ TEST_F(FieldTraceTest, AxisRaysEndAndAreRight) {
     const Score score = scoreOf(room, rays, trace(probes, rays, FieldTracing::Full));
     EXPECT_EQ(score.notFinite, 0u);
     EXPECT_LT(score.falseMiss, 0.001);
-    EXPECT_LT(static_cast<double>(score.capped), 1e-4 * static_cast<double>(rays.size()));
+    EXPECT_LT(static_cast<double>(score.stepLimitReached), 1e-4 * static_cast<double>(rays.size()));
     EXPECT_GE(score.ok, 0.94);
 }
 

@@ -1,4 +1,4 @@
-// Levels of detail on the GPU: which nodes stand for what lies below them, and with which colour.
+// Levels of detail on the GPU: which nodes stand for what lies below them, and with which color.
 #include <bit>
 #include <cmath>
 #include <pfvox/gpu_scene.hpp>
@@ -42,12 +42,12 @@ class LodTest : public GpuTest {
     static std::vector<gpu::GpuRay> raysAt(const OctreeAsset& asset, float cone, int count) {
         Random random(7);
         const VoxelBox& box = asset.models[0].bounds;
-        const glm::dvec3 centre = 0.5 * kVoxelMetres * glm::dvec3(box.min + box.max);
+        const glm::dvec3 center = 0.5 * kVoxelMetres * glm::dvec3(box.min + box.max);
         const double radius = 0.5 * kVoxelMetres * glm::length(glm::dvec3(box.max - box.min));
         std::vector<gpu::GpuRay> rays;
         for (int i = 0; i < count; ++i) {
-            const glm::dvec3 from = centre + random.uniform(1.5, 6.0) * radius * random.direction();
-            const glm::dvec3 to = centre + 0.6 * radius * random.direction();
+            const glm::dvec3 from = center + random.uniform(1.5, 6.0) * radius * random.direction();
+            const glm::dvec3 to = center + 0.6 * radius * random.direction();
             rays.push_back({.origin = from, .direction = glm::normalize(to - from), .cone = cone});
         }
         return rays;

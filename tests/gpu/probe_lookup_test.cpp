@@ -1,4 +1,5 @@
-// The lookup of indirect light on the device: against known light, and against a slow twin for the compact layer.
+// The lookup of indirect light on the device: against known light, and against a slow twin for the compact
+// layer.
 #include <pfvox/probe_query.hpp>
 
 #include <numeric>
@@ -31,7 +32,8 @@ class ProbeLookupTest : public GpuTest {
 
     static bool hasValue(const ProbeLookup& found) {
         const float sum = found.weights.x + found.weights.y + found.weights.z;
-        return found.tier != ProbeTier::None && std::isfinite(found.indirect.x + found.indirect.y + found.indirect.z) &&
+        return found.tier != ProbeTier::None &&
+               std::isfinite(found.indirect.x + found.indirect.y + found.indirect.z) &&
                std::abs(sum - 1.0f) < 1e-4f;
     }
 };
@@ -53,17 +55,17 @@ TEST_F(ProbeLookupTest, EveryPointHasAValueAndMostAreExact) {
         const glm::vec3 apart = found[i].indirect - smoothLight(samples[i].position, samples[i].normal);
         squares += static_cast<double>(glm::dot(apart, apart)) / 3.0;
     }
-    const double share = static_cast<double>(exact) / static_cast<double>(samples.size());
+    const double fraction = static_cast<double>(exact) / static_cast<double>(samples.size());
     const double rmse = std::sqrt(squares / static_cast<double>(exact));
-    RecordProperty("texel_percent", std::to_string(100 * share));
+    RecordProperty("texel_percent", std::to_string(100 * fraction));
     RecordProperty("texel_rmse", std::to_string(rmse));
     EXPECT_EQ(without, 0u);
-    EXPECT_GE(share, 0.9);
+    EXPECT_GE(fraction, 0.9);
     EXPECT_LE(rmse, 0.03);  // of a mean of 0.75: texels wider than what they blend
 }
 
-/// The floor ends a centimetre below the border of its cells, in whose upper neighbours there is nothing: it is looked up
-/// in the cells that have its samples. One probe is active, and not among the eight around.
+/// The floor ends a centimetre below the border of its cells, in whose upper neighbors there is nothing: it
+/// is looked up in the cells that have its samples. One probe is active, and not among the eight around.
 TEST_F(ProbeLookupTest, APlaneNearTheBorderOfItsCellsFindsItsProbes) {
     const BoxRoom room(0);
     ProbeField field = makeRoomField(room, {.resolution = kSmall, .albedo = 1.0f});
@@ -71,18 +73,23 @@ TEST_F(ProbeLookupTest, APlaneNearTheBorderOfItsCellsFindsItsProbes) {
         field.probes[i] = {};
         field.probes[i].record.state = ProbeState::Inactive;
     }
-    addProximity(field, room, ProximityGrid{.start = {-0.1f, -0.39f, -0.1f}, .step = {0.5f, 0.4f, 0.5f}, .counts = {21, 12, 21}, .probes = {}});
+    addProximity(field, room,
+                 ProximityGrid{.start = {-0.1f, -0.39f, -0.1f},
+                               .step = {0.5f, 0.4f, 0.5f},
+                               .counts = {21, 12, 21},
+                               .probes = {}});
     std::vector<SurfaceSample> floor = roomSurface(room, 50000, 3);
     std::erase_if(floor, [](const SurfaceSample& sample) {
         const glm::vec3& p = sample.position;
         return sample.normal.y < 0.9f || p.x < 4.0f || p.x > 6.0f || p.z < 4.0f || p.z > 6.0f;
     });
     ASSERT_GT(floor.size(), 100u);
-    for (const ProbeLookup& found : lookUp(field, floor, {.voxelMetres = 0.1f})) EXPECT_EQ(found.tier, ProbeTier::Texels);
+    for (const ProbeLookup& found : lookUp(field, floor, {.voxelMetres = 0.1f}))
+        EXPECT_EQ(found.tier, ProbeTier::Texels);
 }
 
-/// What stands in for the maps of an inactive probe is never read: there is nothing at its addresses. Even so, all points
-/// have a value, those too around which no probe is active.
+/// What stands in for the maps of an inactive probe is never read: there is nothing at its addresses. Even
+/// so, all points have a value, those too around which no probe is active.
 TEST_F(ProbeLookupTest, InactiveProbesAreNotRead) {
     const BoxRoom room(8);
     const RoomFieldSettings settings{.resolution = {.depth = 64, .light = 64, .irradiance = 8, .moments = 14},
@@ -110,7 +117,8 @@ TEST_F(ProbeLookupTest, InactiveProbesAreNotRead) {
 
 TEST_F(ProbeLookupTest, WithoutAnyActiveProbeItSaysSo) {
     const BoxRoom room(0);
-    ProbeField field = makeRoomField(room, {.resolution = {.irradiance = 8, .moments = 14}, .counts = {2, 1, 1}});
+    ProbeField field =
+        makeRoomField(room, {.resolution = {.irradiance = 8, .moments = 14}, .counts = {2, 1, 1}});
     for (ProbeData& probe : field.probes) {
         probe = {};
         probe.record.state = ProbeState::Inactive;
@@ -125,36 +133,43 @@ TEST_F(ProbeLookupTest, WithoutAnyActiveProbeItSaysSo) {
 class CompactTwin {
   public:
     CompactTwin(const ProbeField& field, const SurfaceSample& point, double voxelMetres)
-        : field_(field), grid_(field.info.grid), point_(point),
+        : field_(field),
+          grid_(field.info.grid),
+          point_(point),
           biased_(glm::dvec3{point.position} +
-                  std::min(2.0 * voxelMetres, 0.2 * std::min({grid_.step.x, grid_.step.y, grid_.step.z})) * glm::dvec3{point.normal}) {}
+                  std::min(2.0 * voxelMetres, 0.2 * std::min({grid_.step.x, grid_.step.y, grid_.step.z})) *
+                      glm::dvec3{point.normal}) {}
 
     glm::vec3 light() {
         const glm::dvec3 at = (biased_ - glm::dvec3{grid_.start}) / glm::dvec3{grid_.step};
-        const glm::dvec3 cell = glm::clamp(glm::floor(at), glm::dvec3{0.0}, glm::max(glm::dvec3{grid_.counts} - 2.0, 0.0));
+        const glm::dvec3 cell =
+            glm::clamp(glm::floor(at), glm::dvec3{0.0}, glm::max(glm::dvec3{grid_.counts} - 2.0, 0.0));
         const glm::dvec3 fraction = glm::clamp(at - cell, 0.0, 1.0);
         for (int corner = 0; corner < 8; ++corner) {
             const glm::ivec3 upper{corner & 1, corner >> 1 & 1, corner >> 2};
-            const glm::dvec3 near = glm::max(glm::mix(1.0 - fraction, fraction, glm::dvec3{upper}), glm::dvec3{0.001});
+            const glm::dvec3 near =
+                glm::max(glm::mix(1.0 - fraction, fraction, glm::dvec3{upper}), glm::dvec3{0.001});
             add(glm::ivec3{cell} + upper, near.x * near.y * near.z);
         }
         const glm::dvec3 root = sum_ / weights_;
         const glm::dvec3 last = glm::dvec3{grid_.counts} - 1.0;
         const glm::dvec3 beyond = glm::max(glm::max(-at, at - last), 0.0);
         const double outside = std::clamp(2.0 * std::max({beyond.x, beyond.y, beyond.z}) - 1.0, 0.0, 1.0);
-        const double share = 1.0 - outside * (1.0 - std::min(seen_ / 0.1, 1.0));
-        if (share >= 1.0) return glm::vec3{root * root};
+        const double fraction = 1.0 - outside * (1.0 - std::min(seen_ / 0.1, 1.0));
+        if (fraction >= 1.0) return glm::vec3{root * root};
         sum_ = glm::dvec3{0.0};
         weights_ = 0.0;
         for (int z = -2; z <= 3; ++z)
             for (int y = -2; y <= 3; ++y)
                 for (int x = -2; x <= 3; ++x) {
                     const glm::ivec3 place = glm::ivec3{cell} + glm::ivec3{x, y, z};
-                    if (glm::any(glm::lessThan(place, glm::ivec3{0})) || glm::any(glm::greaterThan(place, glm::ivec3{last}))) continue;
+                    if (glm::any(glm::lessThan(place, glm::ivec3{0})) ||
+                        glm::any(glm::greaterThan(place, glm::ivec3{last})))
+                        continue;
                     const glm::dvec3 steps = glm::dvec3{place} - glm::clamp(at, glm::dvec3{0.0}, last);
                     add(place, std::exp2(-glm::dot(steps, steps)));
                 }
-        const glm::dvec3 mixed = glm::mix(sum_ / weights_, root, share);
+        const glm::dvec3 mixed = glm::mix(sum_ / weights_, root, fraction);
         return glm::vec3{mixed * mixed};
     }
 
@@ -164,7 +179,9 @@ class CompactTwin {
         const ProbeData& probe = field_.probes[index];
         if (!probe.record.isActive()) return;
         const glm::dvec3 eye = glm::dvec3{grid_.pointOf(index) + probe.record.offset};
-        const double facing = 0.5 * glm::dot(glm::normalize(eye - glm::dvec3{point_.position}), glm::dvec3{point_.normal}) + 0.5;
+        const double facing =
+            0.5 * glm::dot(glm::normalize(eye - glm::dvec3{point_.position}), glm::dvec3{point_.normal}) +
+            0.5;
         const glm::dvec2 moments{lookupMoments(probe.moments, field_.info.resolution.moments,
                                                glm::normalize(glm::vec3{biased_ - eye}))};
         const double d = std::min(glm::length(biased_ - eye) / static_cast<double>(grid_.momentRange()), 1.0);
@@ -178,8 +195,8 @@ class CompactTwin {
         if (own < 0.2) own = own * own * own / 0.04;
         const double weight = near * std::max(own, 1e-4);
         weights_ += weight;
-        sum_ += weight *
-                glm::sqrt(glm::dvec3{lookupIrradiance(probe.irradiance, field_.info.resolution.irradiance, point_.normal)});
+        sum_ += weight * glm::sqrt(glm::dvec3{lookupIrradiance(
+                             probe.irradiance, field_.info.resolution.irradiance, point_.normal)});
     }
 
     const ProbeField& field_;
@@ -193,8 +210,8 @@ class CompactTwin {
 
 TEST_F(ProbeLookupTest, CompactLayerIsWhatItsTwinComputes) {
     const BoxRoom room(24);
-    const ProbeField field =
-        makeRoomField(room, {.resolution = {.irradiance = 8, .moments = 14}, .counts = {5, 3, 4}, .albedo = 0.7f});
+    const ProbeField field = makeRoomField(
+        room, {.resolution = {.irradiance = 8, .moments = 14}, .counts = {5, 3, 4}, .albedo = 0.7f});
     std::vector<SurfaceSample> samples = roomSurface(room, 5000, 9);
     // Every other point outside of the grid, from half a step to four.
     for (std::size_t i = 0; i < samples.size(); i += 2) samples[i].position.x += room.size().x * 0.8f;
@@ -219,7 +236,8 @@ class TwoRooms : public ProbeLookupTest {
         BoxRoom room(0);
         room.add({{5.0f - 0.5f * wallMetres, -0.1f, -0.1f}, {5.0f + 0.5f * wallMetres, 4.1f, 10.1f}});
         const LightAt light = [](glm::vec3 p, glm::vec3) { return glm::vec3{p.x < 5.0f ? 1.0f : 0.0f}; };
-        ProbeField field = makeRoomField(room, {.resolution = resolution, .counts = {6, 3, 6}, .light = light, .albedo = 1.0f});
+        ProbeField field = makeRoomField(
+            room, {.resolution = resolution, .counts = {6, 3, 6}, .light = light, .albedo = 1.0f});
         if (resolution.depth != 0) addProximity(field, room, {20, 8, 20});
         const std::vector<SurfaceSample> samples = roomSurface(room, 20000, 6);
         const std::vector<ProbeLookup> found = lookUp(field, samples);
@@ -254,10 +272,11 @@ TEST_F(TwoRooms, CompactLeaksThroughAWallOfFourVoxels) {
     EXPECT_LE(result.dark, 0.05 * result.lit);
 }
 
-/// A shard has no neighbours to blend with.
+/// A shard has no neighbors to blend with.
 TEST_F(ProbeLookupTest, ShardsAreRefused) {
     const BoxRoom room(0);
-    ProbeField field = makeRoomField(room, {.resolution = {.irradiance = 8, .moments = 14}, .counts = {2, 1, 1}});
+    ProbeField field =
+        makeRoomField(room, {.resolution = {.irradiance = 8, .moments = 14}, .counts = {2, 1, 1}});
     field.info.range.end = 1;
     field.probes.resize(1);
     const auto probes = uploadField(device(), field, {});

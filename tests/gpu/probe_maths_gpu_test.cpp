@@ -38,7 +38,7 @@ class ProbeMathsGpu : public GpuTest {
         return inputs;
     }
 
-    /// The 26 neighbours of the origin: where folds and corners of the map are.
+    /// The 26 neighbors of the origin: where folds and corners of the map are.
     static glm::vec3 axisOrDiagonal(std::size_t i) {
         const auto cell = static_cast<int>(i < 13 ? i : i + 1);
         return glm::vec3{cell % 3 - 1, cell / 3 % 3 - 1, cell / 9 - 1};
@@ -46,11 +46,13 @@ class ProbeMathsGpu : public GpuTest {
 
     static void run(const std::vector<ProbeMathsInput>& inputs, std::vector<ProbeMathsOutput>& outputs) {
         outputs.resize(inputs.size());
-        PFVOX_ASSERT_VALUE(const gpu::Buffer, in, device().createBuffer(sizeof inputs[0] * inputs.size(), "inputs"));
-        PFVOX_ASSERT_VALUE(const gpu::Buffer, out, device().createBuffer(sizeof outputs[0] * outputs.size(), "outputs"));
+        PFVOX_ASSERT_VALUE(const gpu::Buffer, in,
+                           device().createBuffer(sizeof inputs[0] * inputs.size(), "inputs"));
+        PFVOX_ASSERT_VALUE(const gpu::Buffer, out,
+                           device().createBuffer(sizeof outputs[0] * outputs.size(), "outputs"));
         PFVOX_ASSERT_VALUE(const gpu::Program, program,
-                           device().createProgram(shaders::kProbeMathsCheck, sizeof(shared::ProbeMathsParameters),
-                                                  "probe maths check"));
+                           device().createProgram(shaders::kProbeMathsCheck,
+                                                  sizeof(shared::ProbeMathsParameters), "probe maths check"));
         ASSERT_TRUE(device().upload(in, 0, std::as_bytes(std::span(inputs))));
         shared::ProbeMathsParameters push{};
         push.inputs = in.addressWords();
@@ -72,7 +74,9 @@ bool onAnEdge(const ProbeMathsInput& in) {
     return std::min(off.x, off.y) < 1e-5f * static_cast<float>(in.edge);
 }
 
-std::uint32_t difference(std::uint32_t a, std::uint32_t b) { return a > b ? a - b : b - a; }
+std::uint32_t difference(std::uint32_t a, std::uint32_t b) {
+    return a > b ? a - b : b - a;
+}
 
 TEST_F(ProbeMathsGpu, ShadersComputeWhatCppComputes) {
     const std::vector<ProbeMathsInput> inputs = makeInputs(200000);

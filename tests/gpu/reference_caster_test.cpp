@@ -20,19 +20,19 @@ OctreeAsset oneVoxelAt(glm::ivec3 voxel, const Affine& worldFromModel = identity
 TEST(ReferenceCaster, HitsEachFaceFromOutside) {
     const OctreeAsset asset = oneVoxelAt({2, 3, 4});
     const ReferenceCaster caster(asset);
-    const glm::dvec3 centre(2.5, 3.5, 4.5);
+    const glm::dvec3 center(2.5, 3.5, 4.5);
     for (int face = 0; face < 6; ++face) {
         glm::dvec3 normal(0.0);
         normal[face / 2] = face % 2 == 0 ? -1.0 : 1.0;
-        const auto hit = caster.cast({.origin = centre + 10.0 * normal, .direction = -2.0 * normal});
+        const auto hit = caster.cast({.origin = center + 10.0 * normal, .direction = -2.0 * normal});
         ASSERT_TRUE(hit);
         EXPECT_EQ(static_cast<int>(hit->face), face);
         EXPECT_EQ(hit->voxel, glm::ivec3(2, 3, 4));
         EXPECT_DOUBLE_EQ(hit->t, 4.75);
         EXPECT_EQ(hit->normal, normal);
-        EXPECT_FALSE(caster.cast({.origin = centre + 10.0 * normal, .direction = normal}));
+        EXPECT_FALSE(caster.cast({.origin = center + 10.0 * normal, .direction = normal}));
         EXPECT_FALSE(
-            caster.cast({.origin = centre + 10.0 * normal, .direction = -2.0 * normal, .tMax = 4.7}));
+            caster.cast({.origin = center + 10.0 * normal, .direction = -2.0 * normal, .tMax = 4.7}));
     }
 }
 

@@ -93,10 +93,14 @@ TEST_F(SceneTest, EveryFiniteRayEnds) {
     };
     const auto anyOf = [&](float usual) {
         switch (random.integer(0, 4)) {
-            case 0: return 0.0f;
-            case 1: return anyFloat();
-            case 2: return std::nextafter(usual, 1e9f);
-            default: return usual;
+            case 0:
+                return 0.0f;
+            case 1:
+                return anyFloat();
+            case 2:
+                return std::nextafter(usual, 1e9f);
+            default:
+                return usual;
         }
     };
     std::vector<gpu::GpuRay> rays;

@@ -37,7 +37,7 @@ class TraceDifferential : public GpuTest {
     }
 };
 
-std::vector<Material> greyMaterials(int count) {
+std::vector<Material> grayMaterials(int count) {
     std::vector<Material> materials;
     for (int i = 0; i < count; ++i) {
         materials.push_back(material(static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(i >> 4), 90));
@@ -63,7 +63,7 @@ glm::dmat3 randomRotation(Random& random) {
 TEST_F(TraceDifferential, DenseNoiseWithManyMaterials) {
     Random random(1);
     VoxelAsset asset;
-    asset.materials = greyMaterials(700);
+    asset.materials = grayMaterials(700);
     asset.models.push_back(randomModel(random, 24, 0.3, 700));
     asset.instances.emplace_back();
     check(asset);
@@ -72,7 +72,7 @@ TEST_F(TraceDifferential, DenseNoiseWithManyMaterials) {
 TEST_F(TraceDifferential, SparseNoiseAwayFromTheOrigin) {
     Random random(2);
     VoxelAsset asset;
-    asset.materials = greyMaterials(5);
+    asset.materials = grayMaterials(5);
     VoxelModel& model = asset.models.emplace_back();
     for (int i = 0; i < 3000; ++i) {
         model.set({random.integer(-170, 29), random.integer(-60, 139), random.integer(1000, 1199)},
@@ -89,7 +89,7 @@ TEST_F(TraceDifferential, RoomWithLargeLeavesAndHoistedMaterials) {
 TEST_F(TraceDifferential, FarPointers) {
     Random random(6);
     VoxelAsset asset;
-    asset.materials = greyMaterials(40);
+    asset.materials = grayMaterials(40);
     VoxelModel& model = asset.models.emplace_back();
     for (int i = 0; i < 150000; ++i) {
         model.set({random.integer(0, 255), random.integer(0, 255), random.integer(0, 255)},
@@ -102,7 +102,7 @@ TEST_F(TraceDifferential, FarPointers) {
 
 TEST_F(TraceDifferential, SingleVoxel) {
     VoxelAsset asset;
-    asset.materials = greyMaterials(1);
+    asset.materials = grayMaterials(1);
     asset.models.emplace_back().set({3, -2, 7}, 0);
     asset.instances.emplace_back();
     check(asset);
@@ -110,7 +110,7 @@ TEST_F(TraceDifferential, SingleVoxel) {
 
 TEST_F(TraceDifferential, SeveralRegions) {
     VoxelAsset asset;
-    asset.materials = greyMaterials(16);
+    asset.materials = grayMaterials(16);
     asset.models.push_back(largeModel(16));
     asset.instances.emplace_back();
     check(asset);
@@ -119,7 +119,7 @@ TEST_F(TraceDifferential, SeveralRegions) {
 TEST_F(TraceDifferential, RegionsFarApart) {
     Random random(3);
     VoxelAsset asset;
-    asset.materials = greyMaterials(9);
+    asset.materials = grayMaterials(9);
     VoxelModel& model = asset.models.emplace_back();
     for (int cluster = 0; cluster < 40; ++cluster) {
         const glm::ivec3 at(random.integer(-9000, 9000), random.integer(-3000, 3000),
@@ -137,7 +137,7 @@ TEST_F(TraceDifferential, RegionsFarApart) {
 TEST_F(TraceDifferential, RotatedMirroredShearedAndStretchedInstances) {
     Random random(4);
     VoxelAsset asset;
-    asset.materials = greyMaterials(8);
+    asset.materials = grayMaterials(8);
     asset.models.push_back(randomModel(random, 12, 0.35, 8));
     asset.models.push_back(randomModel(random, 17, 0.08, 8));
     for (std::uint32_t i = 0; i < 14; ++i) {
@@ -158,7 +158,7 @@ TEST_F(TraceDifferential, RotatedMirroredShearedAndStretchedInstances) {
 TEST_F(TraceDifferential, ThousandInstances) {
     Random random(5);
     VoxelAsset asset;
-    asset.materials = greyMaterials(4);
+    asset.materials = grayMaterials(4);
     asset.models.push_back(randomModel(random, 8, 0.3, 4));
     for (int i = 0; i < 1000; ++i) {
         const glm::dvec3 position(random.uniform(-30, 30), random.uniform(-5, 5), random.uniform(-30, 30));

@@ -1,5 +1,5 @@
-// PF_PROBE files that lie: every prefix, every flipped bit, and every field that a reader could trust with its hash
-// repaired, so that the check behind the hash is what is tested.
+// PF_PROBE files that lie: every prefix, every flipped bit, and every field that a reader could trust with
+// its hash repaired, so that the check behind the hash is what is tested.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -18,7 +18,9 @@ using test::Bytes;
 using test::OpenFile;
 namespace pl = probe_layout;
 
-const Bytes& sampleFile() { return test::probeSample(); }
+const Bytes& sampleFile() {
+    return test::probeSample();
+}
 
 Result<ProbeField> decode(const Bytes& file, const Limits& limits = {}) {
     DiagnosticList diagnostics;
@@ -90,7 +92,8 @@ TEST(PfProbeHostile, RandomDamageBehindTheHashesNeverCrashes) {
 }
 
 TEST(PfProbeHostile, SampleSurvivesSurgery) {
-    EXPECT_EQ(decode(test::closeProbeFile(test::openFile(sampleFile()))).value(), decode(sampleFile()).value());
+    EXPECT_EQ(decode(test::closeProbeFile(test::openFile(sampleFile()))).value(),
+              decode(sampleFile()).value());
 }
 
 TEST(PfProbeHostile, ForeignFiles) {
@@ -114,7 +117,8 @@ TEST(PfProbeHostile, OtherVersionsAndFeaturesAreNamed) {
 
 TEST(PfProbeHostile, UnknownSections) {
     OpenFile open = test::openFile(sampleFile());
-    open.parts.push_back({.entry = {.fourcc = {'X', 'T', 'R', 'A'}, .region = layout::kNoRegion}, .raw = {1, 2, 3}});
+    open.parts.push_back(
+        {.entry = {.fourcc = {'X', 'T', 'R', 'A'}, .region = layout::kNoRegion}, .raw = {1, 2, 3}});
     DiagnosticList diagnostics;
     EXPECT_TRUE(decodePfProbe(test::closeProbeFile(open), Limits{}, diagnostics));
     ASSERT_EQ(diagnostics.entries().size(), 1u);
@@ -153,7 +157,9 @@ std::function<void(OpenFile&)> edit(const char* fourcc, std::size_t i, std::func
 
 std::vector<Lie> lies() {
     using enum ErrorCode;
-    const auto info = [](std::function<void(pl::Info&)> change) { return edit<pl::Info>("INFO", 0, std::move(change)); };
+    const auto info = [](std::function<void(pl::Info&)> change) {
+        return edit<pl::Info>("INFO", 0, std::move(change));
+    };
     const auto record = [](std::size_t i, std::function<void(pl::Record&)> change) {
         return edit<pl::Record>("PROB", i, std::move(change));
     };
@@ -171,16 +177,22 @@ std::vector<Lie> lies() {
     };
     const auto cell = [](std::size_t cellIndex, std::array<std::uint16_t, 4> list) {
         return [=](OpenFile& open) {
-            std::memcpy(open.part("PROX").raw.data() + sizeof(pl::Proximity) + cellIndex * sizeof list, list.data(),
-                        sizeof list);
+            std::memcpy(open.part("PROX").raw.data() + sizeof(pl::Proximity) + cellIndex * sizeof list,
+                        list.data(), sizeof list);
         };
     };
     const float kNan = std::nanf("");
     return {
         {"grid of no probes", BadValue, info([](pl::Info& i) { i.gridCounts[1] = 0; })},
-        {"grid of 2^96 probes", BadValue, info([](pl::Info& i) { i.gridCounts = {~0u, ~0u, ~0u}; })},
-        {"grid of 2^64 probes, which wraps to 0", BadValue, info([](pl::Info& i) { i.gridCounts = {1u << 31, 1u << 31, 4}; })},
-        {"grid of 2^32 probes", BadValue, info([](pl::Info& i) { i.gridCounts = {1u << 16, 1u << 16, 1}; })},
+        {"grid of 2^96 probes", BadValue, info([](pl::Info& i) {
+             i.gridCounts = {~0u, ~0u, ~0u};
+         })},
+        {"grid of 2^64 probes, which wraps to 0", BadValue, info([](pl::Info& i) {
+             i.gridCounts = {1u << 31, 1u << 31, 4};
+         })},
+        {"grid of 2^32 probes", BadValue, info([](pl::Info& i) {
+             i.gridCounts = {1u << 16, 1u << 16, 1};
+         })},
         {"step of NaN", BadValue, info([=](pl::Info& i) { i.gridStep[0] = kNan; })},
         {"step backwards", BadValue, info([](pl::Info& i) { i.gridStep[2] = -1; })},
         {"start at infinity", BadValue, info([](pl::Info& i) { i.gridStart[2] = INFINITY; })},
@@ -191,16 +203,19 @@ std::vector<Lie> lies() {
              i.gridCounts = {4000000, 1, 1};
              i.rangeEnd = 4000000;
          })},
-        {"maps of 2^32 texels", BadValue, info([](pl::Info& i) { i.lightEdge = 65536; })},
-        {"edge that is no multiple of 16", BadValue, info([](pl::Info& i) { i.depthEdge = 40; })},
-        {"larger maps than the frames hold", BadStructure, info([](pl::Info& i) { i.lightEdge = 8192; })},
-        {"smaller maps than the frames hold", BadStructure, info([](pl::Info& i) { i.lightEdge = 2; })},
-        {"a layer less", BadStructure, info([](pl::Info& i) { i.momentsEdge = 0; })},
-        {"no layers", BadValue,
-         info([](pl::Info& i) { i.depthEdge = i.lightEdge = i.irradianceEdge = i.momentsEdge = 0; })},
+        {"maps of 2^32 texels", BadValue, info([](pl::Info& i) { i.lightResolution = 65536; })},
+        {"edge that is no multiple of 16", BadValue, info([](pl::Info& i) { i.depthResolution = 40; })},
+        {"larger maps than the frames hold", BadStructure,
+         info([](pl::Info& i) { i.lightResolution = 8192; })},
+        {"smaller maps than the frames hold", BadStructure, info([](pl::Info& i) { i.lightResolution = 2; })},
+        {"a layer less", BadStructure, info([](pl::Info& i) { i.momentsResolution = 0; })},
+        {"no layers", BadValue, info([](pl::Info& i) {
+             i.depthResolution = i.lightResolution = i.irradianceResolution = i.momentsResolution = 0;
+         })},
         {"Far of 0", BadValue, info([](pl::Info& i) { i.depthFarMetres = 0; })},
         {"scale of NaN", BadValue, info([=](pl::Info& i) { i.depthScale = kNan; })},
-        {"depth range that overflows", BadValue, info([](pl::Info& i) { i.depthScale = i.depthFarMetres = 3e38f; })},
+        {"depth range that overflows", BadValue,
+         info([](pl::Info& i) { i.depthScale = i.depthFarMetres = 3e38f; })},
         {"unknown kind of light", BadValue, info([](pl::Info& i) { i.lightContent |= 1u << 30; })},
         {"noise of NaN", BadValue, info([=](pl::Info& i) { i.noiseTarget = kNan; })},
         {"name longer than the section", BadStructure, info([](pl::Info& i) { i.deviceNameBytes = ~0u; })},
@@ -210,23 +225,27 @@ std::vector<Lie> lies() {
         {"offset of an active probe", BadValue, record(0, [](pl::Record& r) { r.offset[0] = 1; })},
         {"offset of NaN", BadValue, record(4, [=](pl::Record& r) { r.offset[0] = kNan; })},
         {"negative error", BadValue, record(0, [](pl::Record& r) { r.error = -1; })},
-        {"share above 1", BadValue, record(0, [](pl::Record& r) { r.cappedTileShare = 1.5f; })},
+        {"share above 1", BadValue, record(0, [](pl::Record& r) { r.noisyTileFraction = 1.5f; })},
         {"unknown flags", BadValue, record(0, [](pl::Record& r) { r.flags = 1; })},
         {"reserved field of a record", BadValue, record(0, [](pl::Record& r) { r.reserved = 1; })},
         {"inactive probe with maps", BadStructure, record(0, [](pl::Record& r) { r.state = 1; })},
         {"active probe without maps", BadStructure, record(3, [](pl::Record& r) { r.state = 0; })},
         {"frame of 4 GiB", BadStructure, frame(0, [](pl::Frame& f) { f.storedBytes = ~0u; })},
         {"frame of one byte", BadStructure, frame(0, [](pl::Frame& f) { f.storedBytes = 1; })},
-        {"codec 2", UnsupportedFeature, frame(1, [](pl::Frame& f) { f.codec = static_cast<pl::FrameCodec>(2); })},
+        {"codec 2", UnsupportedFeature,
+         frame(1, [](pl::Frame& f) { f.codec = static_cast<pl::FrameCodec>(2); })},
         {"compressed as raw", BadStructure, frame(0, [](pl::Frame& f) { f.codec = pl::FrameCodec::Raw; })},
         {"hash of another map", ChecksumMismatch, frame(0, [](pl::Frame& f) { f.rawHash ^= 1; })},
-        {"frames of one probe less", BadStructure, [](OpenFile& open) {
+        {"frames of one probe less", BadStructure,
+         [](OpenFile& open) {
              OpenFile::Part& part = open.part("FRAM");
              part.raw.resize(part.raw.size() - 5 * sizeof(pl::Frame));
              part.entry.count -= 5;
          }},
-        {"maps shorter than their frames", BadStructure, [](OpenFile& open) { open.part("DATA").raw.pop_back(); }},
-        {"maps longer than their frames", BadStructure, [](OpenFile& open) { open.part("DATA").raw.push_back(0); }},
+        {"maps shorter than their frames", BadStructure,
+         [](OpenFile& open) { open.part("DATA").raw.pop_back(); }},
+        {"maps longer than their frames", BadStructure,
+         [](OpenFile& open) { open.part("DATA").raw.push_back(0); }},
         {"count of DATA", BadStructure, [](OpenFile& open) { open.part("DATA").entry.count = 1; }},
         {"2^60 records", BadStructure, [](OpenFile& open) { open.part("PROB").entry.count = 1ull << 60; }},
         {"no INFO", BadStructure, drop("INFO")},
@@ -235,7 +254,9 @@ std::vector<Lie> lies() {
         {"no FRAM", BadStructure, drop("FRAM")},
         {"no DATA", BadStructure, drop("DATA")},
         {"section twice", BadStructure, [](OpenFile& open) { open.parts.push_back(open.part("PROB")); }},
-        {"grid of 2^96 cells", BadValue, proximity([](pl::Proximity& p) { p.counts = {~0u, ~0u, ~0u}; })},
+        {"grid of 2^96 cells", BadValue, proximity([](pl::Proximity& p) {
+             p.counts = {~0u, ~0u, ~0u};
+         })},
         {"one cell more", BadStructure, proximity([](pl::Proximity& p) { ++p.counts[0]; })},
         {"cells of no size", BadValue, proximity([](pl::Proximity& p) { p.step[1] = 0; })},
         {"indices of 8 bits", BadValue, proximity([](pl::Proximity& p) { p.indexBits = 8; })},

@@ -1,5 +1,5 @@
-// PF_VOX files that lie: every prefix, every flipped bit, and every field that a reader could trust with its hash
-// repaired, so that the check behind the hash is what is tested.
+// PF_VOX files that lie: every prefix, every flipped bit, and every field that a reader could trust with its
+// hash repaired, so that the check behind the hash is what is tested.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -16,8 +16,8 @@ namespace {
 using test::Bytes;
 using test::OpenFile;
 
-/// A small file with a feature of every kind: a top tree of three regions, a hoisted value, an empty model, levels of
-/// detail.
+/// A small file with a feature of every kind: a top tree of three regions, a hoisted value, an empty model,
+/// levels of detail.
 Bytes makeSampleFile(Profile profile) {
     std::vector<VoxelModel> models;
     models.push_back(test::patchyModel(11, 20));
@@ -101,12 +101,15 @@ TEST(PfVoxHostile, RandomDamageBehindTheHashesNeverCrashes) {
         const auto asset = decode(test::closeFile(std::move(open)));
         if (!asset) continue;
         ++accepted;
-        for (const OctreeModel& model : asset->models) static_cast<void>(statistics(model, asset->materials.size()));
+        for (const OctreeModel& model : asset->models)
+            static_cast<void>(statistics(model, asset->materials.size()));
     }
-    EXPECT_GT(accepted, 0u);  // colours and names may be anything: the test reached behind the hashes
+    EXPECT_GT(accepted, 0u);  // colors and names may be anything: the test reached behind the hashes
 }
 
-TEST(PfVoxHostile, SampleSurvivesSurgery) { EXPECT_TRUE(decode(test::closeFile(test::openFile(sampleFile())))); }
+TEST(PfVoxHostile, SampleSurvivesSurgery) {
+    EXPECT_TRUE(decode(test::closeFile(test::openFile(sampleFile()))));
+}
 
 TEST(PfVoxHostile, ForeignFiles) {
     const std::string text = "hello world, this is a text";
@@ -130,7 +133,8 @@ TEST(PfVoxHostile, OtherVersionsAndFeaturesAreNamed) {
 
 TEST(PfVoxHostile, UnknownSections) {
     OpenFile open = test::openFile(sampleFile());
-    open.parts.push_back({.entry = {.fourcc = {'X', 'T', 'R', 'A'}, .region = layout::kNoRegion}, .raw = {1, 2, 3}});
+    open.parts.push_back(
+        {.entry = {.fourcc = {'X', 'T', 'R', 'A'}, .region = layout::kNoRegion}, .raw = {1, 2, 3}});
     DiagnosticList diagnostics;
     EXPECT_TRUE(decodePfVox(test::closeFile(open), Limits{}, diagnostics));
     ASSERT_EQ(diagnostics.entries().size(), 1u);
@@ -156,8 +160,12 @@ std::vector<Lie> lies() {
     using layout::Material;
     using layout::Model;
     using layout::Region;
-    const auto region = [](std::function<void(Region&)> change) { return edit<Region>("REGN", 0, std::move(change)); };
-    const auto model = [](std::function<void(Model&)> change) { return edit<Model>("MODL", 1, std::move(change)); };
+    const auto region = [](std::function<void(Region&)> change) {
+        return edit<Region>("REGN", 0, std::move(change));
+    };
+    const auto model = [](std::function<void(Model&)> change) {
+        return edit<Model>("MODL", 1, std::move(change));
+    };
     const auto drop = [](const char* fourcc, std::uint32_t id = layout::kNoRegion) {
         return [=](OpenFile& open) {
             const layout::Section gone = open.part(fourcc, id).entry;
@@ -181,23 +189,31 @@ std::vector<Lie> lies() {
              r.boundsMin = {0, 0, 0};
              r.boundsMax = {1, 1, 1};
          })},
-        {"far pointers that are not there", ErrorCode::BadStructure, region([](Region& r) { r.farCount = 7; })},
+        {"far pointers that are not there", ErrorCode::BadStructure,
+         region([](Region& r) { r.farCount = 7; })},
         {"four billion values", ErrorCode::BadValue, region([](Region& r) { r.valueCount = 0xffffffffu; })},
         {"one value less", ErrorCode::BadStructure, region([](Region& r) { --r.valueCount; })},
         {"palette outside", ErrorCode::BadReference, region([](Region& r) { r.paletteFirst = 0xfffffff0u; })},
-        {"palette too long", ErrorCode::BadReference, region([](Region& r) { r.paletteCount = 0xffffffffu; })},
+        {"palette too long", ErrorCode::BadReference,
+         region([](Region& r) { r.paletteCount = 0xffffffffu; })},
         {"palette empty", ErrorCode::BadReference, region([](Region& r) { r.paletteCount = 0; })},
-        {"palette shorter than its values", ErrorCode::BadReference, region([](Region& r) { r.paletteCount = 1; })},
-        {"bounds outside", ErrorCode::BadValue, region([](Region& r) { r.boundsMax = {300, 300, 300}; })},
-        {"bounds inverted", ErrorCode::BadValue, region([](Region& r) { std::swap(r.boundsMin, r.boundsMax); })},
+        {"palette shorter than its values", ErrorCode::BadReference,
+         region([](Region& r) { r.paletteCount = 1; })},
+        {"bounds outside", ErrorCode::BadValue, region([](Region& r) {
+             r.boundsMax = {300, 300, 300};
+         })},
+        {"bounds inverted", ErrorCode::BadValue,
+         region([](Region& r) { std::swap(r.boundsMin, r.boundsMax); })},
         {"region elsewhere than its leaf", ErrorCode::BadStructure,
          edit<Region>("REGN", 1, [](Region& r) { r.origin[0] += 256; })},
         {"regions of another model", ErrorCode::BadReference, model([](Model& m) { m.firstRegion = 0; })},
-        {"four billion regions", ErrorCode::BadReference, model([](Model& m) { m.regionCount = 0xffffffffu; })},
+        {"four billion regions", ErrorCode::BadReference,
+         model([](Model& m) { m.regionCount = 0xffffffffu; })},
         {"depth 200", ErrorCode::LimitExceeded, model([](Model& m) { m.depth = 200; })},
         {"top tree without depth", ErrorCode::BadStructure, model([](Model& m) { m.depth = 8; })},
         {"top tree of no nodes", ErrorCode::BadStructure, model([](Model& m) { m.topNodeCount = 0; })},
-        {"top tree of too many nodes", ErrorCode::BadStructure, model([](Model& m) { m.topNodeCount = 1000; })},
+        {"top tree of too many nodes", ErrorCode::BadStructure,
+         model([](Model& m) { m.topNodeCount = 1000; })},
         {"top tree with one leaf less", ErrorCode::BadStructure, poke("TOPT", layout::kNoRegion, 1, 1)},
         {"node without children", ErrorCode::BadStructure,
          [](OpenFile& open) { open.part("MASK", 0).raw.back() = 0; }},
@@ -218,7 +234,8 @@ std::vector<Lie> lies() {
          edit<Instance>("INST", 1, [](Instance& i) { i.model = 12; })},
         {"transform that is no number", ErrorCode::BadValue,
          edit<Instance>("INST", 0, [](Instance& i) { i.worldFromModel[3] = std::nanf(""); })},
-        {"material of unknown type", ErrorCode::BadValue, edit<Material>("MATL", 0, [](Material& m) { m.type = 99; })},
+        {"material of unknown type", ErrorCode::BadValue,
+         edit<Material>("MATL", 0, [](Material& m) { m.type = 99; })},
         {"name table that points outside", ErrorCode::BadStructure, poke("NAME", layout::kNoRegion, 7, 0x7f)},
         {"voxel size zero", ErrorCode::BadValue,
          [](OpenFile& open) { std::fill_n(open.part("META").raw.begin(), 8, std::uint8_t{0}); }},
@@ -227,7 +244,8 @@ std::vector<Lie> lies() {
         {"no top trees", ErrorCode::BadStructure, drop("TOPT")},
         {"no masks of a region", ErrorCode::BadStructure, drop("MASK", 1)},
         {"no values of a region", ErrorCode::BadStructure, drop("ATTR", 2)},
-        {"section twice", ErrorCode::BadStructure, [](OpenFile& open) { open.parts.push_back(open.part("MATL")); }},
+        {"section twice", ErrorCode::BadStructure,
+         [](OpenFile& open) { open.parts.push_back(open.part("MATL")); }},
         {"masks of a region that does not exist", ErrorCode::BadStructure,
          [](OpenFile& open) { open.part("MASK", 2).entry.region = 0xfffffff0u; }},
         {"count that does not fit the bytes", ErrorCode::BadStructure,
@@ -247,7 +265,8 @@ TEST(PfVoxHostile, LiesWithRepairedHashes) {
 }
 
 /// Adds to a word of a resident section.
-std::function<void(OpenFile&)> addToWord(const char* fourcc, std::uint32_t id, std::size_t at, std::uint32_t amount) {
+std::function<void(OpenFile&)> addToWord(const char* fourcc, std::uint32_t id, std::size_t at,
+                                         std::uint32_t amount) {
     return [=](OpenFile& open) {
         std::uint8_t* place = open.part(fourcc, id).raw.data() + 4 * at;
         std::uint32_t word = 0;
@@ -296,12 +315,13 @@ std::vector<Lie> residentLies() {
          edit<Region>("REGN", 0, [](Region& r) { ++r.nodeCount; })},
         {"other number of branches", ErrorCode::BadStructure,
          edit<Region>("REGN", 0, [](Region& r) { ++r.branchCount; })},
-        {"too flat for its nodes", ErrorCode::BadStructure, edit<Region>("REGN", 0,
-                                                                         [](Region& r) {
-                                                                             r.depth = 1;
-                                                                             r.boundsMin = {0, 0, 0};
-                                                                             r.boundsMax = {1, 1, 1};
-                                                                         })},
+        {"too flat for its nodes", ErrorCode::BadStructure,
+         edit<Region>("REGN", 0,
+                      [](Region& r) {
+                          r.depth = 1;
+                          r.boundsMin = {0, 0, 0};
+                          r.boundsMax = {1, 1, 1};
+                      })},
         {"far pointers that are not there", ErrorCode::BadStructure,
          edit<Region>("REGN", 0, [](Region& r) { r.farCount = 7; })},
         {"level of detail outside its palette", ErrorCode::BadReference,
@@ -310,7 +330,8 @@ std::vector<Lie> residentLies() {
         {"no lookup", ErrorCode::BadStructure, drop("LOOK")},
         {"no values", ErrorCode::BadStructure, drop("VALU")},
         {"no top tree", ErrorCode::BadStructure, drop("TOPN")},
-        {"packed by its header", ErrorCode::BadStructure, [](OpenFile& open) { open.header.requiredFeatures = 0; }},
+        {"packed by its header", ErrorCode::BadStructure,
+         [](OpenFile& open) { open.header.requiredFeatures = 0; }},
     };
 }
 
@@ -373,7 +394,8 @@ TEST(PfVoxHostile, SectionTableThatLies) {
     expectRefused(withTableEntry([](Section& s) { s.offset = 64; }), ErrorCode::BadStructure, "overlaps");
     expectRefused(withTableEntry([](Section& s) { s.offset += 1; }), ErrorCode::BadStructure, "aligned");
     expectRefused(withTableEntry([](Section& s) { s.rawBytes = 1ull << 40; }), ErrorCode::BadStructure);
-    expectRefused(withTableEntry([](Section& s) { s.codec = layout::Codec{7}; }), ErrorCode::UnsupportedFeature);
+    expectRefused(withTableEntry([](Section& s) { s.codec = layout::Codec{7}; }),
+                  ErrorCode::UnsupportedFeature);
     expectRefused(withTableEntry([](Section& s) { s.rawHash ^= 1; }), ErrorCode::ChecksumMismatch);
     Bytes many = sampleFile();
     const std::uint32_t count = 0xffffffffu;

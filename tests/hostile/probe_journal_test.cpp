@@ -1,4 +1,5 @@
-// The journal of a bake: killed at any byte, and damaged anywhere. What it then gives must be probes that were written.
+// The journal of a bake: killed at any byte, and damaged anywhere. What it then gives must be probes that
+// were written.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -62,8 +63,10 @@ TEST_F(ProbeJournal, EveryPrefixGivesTheWholeRecordsInIt) {
     for (std::size_t size = 0; size <= whole.size(); ++size) {
         test::writeText(journal_, whole.substr(0, size));
         DiagnosticList diagnostics;
-        const auto records = std::ranges::count_if(starts_, [&](std::uint64_t start) { return start <= size; }) - 1;
-        ASSERT_EQ(resume(diagnostics), static_cast<std::size_t>(std::max<std::ptrdiff_t>(records, 0))) << size;
+        const auto records =
+            std::ranges::count_if(starts_, [&](std::uint64_t start) { return start <= size; }) - 1;
+        ASSERT_EQ(resume(diagnostics), static_cast<std::size_t>(std::max<std::ptrdiff_t>(records, 0)))
+            << size;
         const bool isTorn = size > starts_[0] && std::ranges::find(starts_, size) == starts_.end();
         ASSERT_EQ(diagnostics.entries().size(), isTorn ? 1u : 0u) << size;
         if (isTorn) {
@@ -80,7 +83,8 @@ TEST_F(ProbeJournal, EveryDamagedByteEndsItThere) {
         damaged[at] = static_cast<char>(damaged[at] ^ 0x41);
         test::writeText(journal_, damaged);
         DiagnosticList diagnostics;
-        const auto records = std::ranges::count_if(starts_, [&](std::uint64_t start) { return start <= at; }) - 1;
+        const auto records =
+            std::ranges::count_if(starts_, [&](std::uint64_t start) { return start <= at; }) - 1;
         ASSERT_EQ(resume(diagnostics), static_cast<std::size_t>(std::max<std::ptrdiff_t>(records, 0))) << at;
         ASSERT_EQ(diagnostics.entries().size(), 1u);
         ASSERT_EQ(diagnostics.entries()[0].id, "probe-journal-damaged") << at;

@@ -65,7 +65,8 @@ TEST(VoxHostile, EveryTruncationIsRefusedOrBetweenChunksSaid) {
         ImportRun run;
         const auto asset = run(whole.substr(0, size));
         refused += asset ? 0u : 1u;
-        EXPECT_TRUE(!asset || run.messageOf("vox-container-size").find("may be incomplete") != std::string::npos)
+        EXPECT_TRUE(!asset ||
+                    run.messageOf("vox-container-size").find("may be incomplete") != std::string::npos)
             << size;
     }
     EXPECT_GT(refused, whole.size() - 20u) << "there are few places between chunks";

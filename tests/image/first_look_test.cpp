@@ -109,8 +109,8 @@ TEST_F(FirstLook, AWallHidesTheSkyFromTheFloorAtItsFoot) {
     EXPECT_GT(statistics.ambientRays, 64u * 3000u) << "rays of a pixel in a picture";
 }
 
-/// Share of the light of a lamp with a square, level face that reaches a point below its middle: a textbook
-/// form factor.
+/// Fraction of the light of a lamp with a square, level face that reaches a point below its middle: a
+/// textbook form factor.
 double formFactorBelow(double halfEdge, double height) {
     const double a = halfEdge / height;
     const double root = std::sqrt(1.0 + a * a);

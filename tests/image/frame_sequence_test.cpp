@@ -1,5 +1,5 @@
-// Frames that follow one another become one picture: the mean while the camera stands, a history that moves along when it
-// does not.
+// Frames that follow one another become one picture: the mean while the camera stands, a history that moves
+// along when it does not.
 #include "frame_sequence.hpp"
 
 #include <array>
@@ -109,8 +109,10 @@ TEST_F(FrameSequenceTest, ACutLeavesNoGhost) {
     for (int i = 0; i < 16; ++i) next(camera);
     const ViewCamera other = turned(0.9);
     const Picture cut = next(other);
-    // Where the history is held near the neighbours it may add a little; what the first frame alone shows is the measure.
-    EXPECT_LT(distanceBetween(cut, reference(other, 64)), 1.05 * distanceBetween(reference(other, 1), reference(other, 64)));
+    // Where the history is held near the neighbors it may add a little; what the first frame alone shows is
+    // the measure.
+    EXPECT_LT(distanceBetween(cut, reference(other, 64)),
+              1.05 * distanceBetween(reference(other, 1), reference(other, 64)));
 }
 
 TEST_F(FrameSequenceTest, SizeMayChange) {

@@ -43,14 +43,15 @@ TEST_F(InspectingViews, NormalsAlbedoMaterialAndDepthOfATurnedModel) {
         const PictureSettings settings = settingsOf(mode);
         PFVOX_ASSERT_VALUE(const Shot, shot, draw(asset, settings));
         EXPECT_GT(shot.statistics.hits, 3000u);
-        EXPECT_LE(differingShare(shot.picture, referencePicture(asset, cameraOf(asset, settings), settings)),
-                  0.002)
+        EXPECT_LE(
+            differingFraction(shot.picture, referencePicture(asset, cameraOf(asset, settings), settings)),
+            0.002)
             << toString(mode);
     }
 }
 
-// The face towards -y of a model that is turned by 0.9 about z: its normal is (sin 0.9, -cos 0.9, 0). As a power of 2.2 its
-// green was 44.
+// The face towards -y of a model that is turned by 0.9 about z: its normal is (sin 0.9, -cos 0.9, 0). As a
+// power of 2.2 its green was 44.
 TEST_F(InspectingViews, ANormalIsShownAsItIsAndNotAsAPowerOfIt) {
     VoxelAsset asset;
     asset.materials = {material(220, 20, 20)};
@@ -150,10 +151,10 @@ TEST_F(AtlasViews, MapsOfAProbe) {
         EXPECT_TRUE(reader.readLayer(probe, layer, std::as_writable_bytes(std::span(map))));
         return map;
     };
-    const std::uint32_t depthEdge = reader.info().resolution.depth;
-    const std::uint32_t lightEdge = reader.info().resolution.light;
-    const std::vector<std::uint32_t> depth = words(ProbeLayer::DepthNormal, depthEdge);
-    const std::vector<std::uint32_t> light = words(ProbeLayer::Light, lightEdge);
+    const std::uint32_t depthResolution = reader.info().resolution.depth;
+    const std::uint32_t lightResolution = reader.info().resolution.light;
+    const std::vector<std::uint32_t> depth = words(ProbeLayer::DepthNormal, depthResolution);
+    const std::vector<std::uint32_t> light = words(ProbeLayer::Light, lightResolution);
     const auto byteOf = [](double v) { return static_cast<std::uint32_t>(std::lround(255.0 * v)); };
     const auto grayOrRgb = [&](const glm::dvec3& c) {
         return byteOf(c.x) | byteOf(c.y) << 8 | byteOf(c.z) << 16;
@@ -166,7 +167,7 @@ TEST_F(AtlasViews, MapsOfAProbe) {
     };
     for (const ViewMode mode : {ViewMode::AtlasNormals, ViewMode::AtlasDepth, ViewMode::AtlasLight}) {
         const Picture picture = map(mode, probe);
-        const std::uint32_t edge = mode == ViewMode::AtlasLight ? lightEdge : depthEdge;
+        const std::uint32_t edge = mode == ViewMode::AtlasLight ? lightResolution : depthResolution;
         const std::vector<std::uint32_t>& texels = mode == ViewMode::AtlasLight ? light : depth;
         std::size_t wrong = 0;
         for (std::uint32_t y = 0; y < edge; ++y) {

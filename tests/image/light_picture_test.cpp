@@ -1,4 +1,5 @@
-// Pictures lit by probes, in every view, against golden pictures; and that no surface is without indirect light.
+// Pictures lit by probes, in every view, against golden pictures; and that no surface is without indirect
+// light.
 #include <array>
 #include <cmath>
 
@@ -23,7 +24,8 @@ class LightPicture : public PictureTest {
         auto made = gpu::Scene::build(device(), gpu::partsOf(*loaded), diagnostics);
         ASSERT_TRUE(made) << describe(made.error());
         scene.emplace(*std::move(made));
-        auto opened = openProbes(device(), litHallProbes(device(), *loaded), *loaded, folder / "hall.toml", diagnostics);
+        auto opened = openProbes(device(), litHallProbes(device(), *loaded), *loaded, folder / "hall.toml",
+                                 diagnostics);
         ASSERT_TRUE(opened) << describe(opened.error());
         probes.emplace(*std::move(opened));
         settings.lighting = lightingOf(loaded->scene);
@@ -59,7 +61,8 @@ class LightPicture : public PictureTest {
 };
 
 TEST_F(LightPicture, TheProbesBelongToTheHall) {
-    EXPECT_TRUE(probes->ofThisScene) << "the kept field is of another hall: PFVOX_UPDATE_GOLDEN=1 bakes it anew";
+    EXPECT_TRUE(probes->ofThisScene)
+        << "the kept field is of another hall: PFVOX_UPDATE_GOLDEN=1 bakes it anew";
     EXPECT_EQ(probes->probes.size(), 24u);
     EXPECT_EQ(probes->info.resolution.depth, 64u);
 }
@@ -70,7 +73,7 @@ TEST_F(LightPicture, EveryViewWithProbes) {
         PictureStatistics statistics;
         const Picture picture = drawn(true, statistics);
         EXPECT_TRUE(matchesGolden(picture, "hall-" + std::string(view.name))) << view.name;
-        EXPECT_EQ(statistics.cappedRays, 0u) << view.name;
+        EXPECT_EQ(statistics.stepLimitRays, 0u) << view.name;
         EXPECT_EQ(statistics.withoutValue, 0u) << view.name;
     }
 }
@@ -176,12 +179,15 @@ TEST_F(LightPicture, NoSurfaceOfAnySceneIsWithoutIndirectLight) {
         const std::filesystem::path field = probesBeside(file);
         const auto baked = bakeProbes(device(), alone, bake, field, observer, diagnostics);
         ASSERT_TRUE(baked) << describe(baked.error());
-        PFVOX_ASSERT_VALUE(const gpu::Scene, built, gpu::Scene::build(device(), gpu::partsOf(alone), diagnostics));
+        PFVOX_ASSERT_VALUE(const gpu::Scene, built,
+                           gpu::Scene::build(device(), gpu::partsOf(alone), diagnostics));
         PFVOX_ASSERT_VALUE(const ShownProbes, shown, openProbes(device(), field, alone, file, diagnostics));
-        PictureSettings small{.width = 128, .height = 96, .samplesPerPixel = 1, .mode = ViewMode::Tiers, .lighting = {}};
+        PictureSettings small{
+            .width = 128, .height = 96, .samplesPerPixel = 1, .mode = ViewMode::Tiers, .lighting = {}};
         PictureStatistics statistics;
-        PFVOX_ASSERT_VALUE(const Picture, picture,
-                           renderer->render(device(), {built, &shown}, cameraOf(built.bounds(), small), small, statistics));
+        PFVOX_ASSERT_VALUE(
+            const Picture, picture,
+            renderer->render(device(), {built, &shown}, cameraOf(built.bounds(), small), small, statistics));
         std::uint64_t lookups = 0;
         for (const std::uint64_t tier : statistics.tiers) lookups += tier;
         EXPECT_GT(lookups, 1000u) << name;
@@ -202,7 +208,8 @@ TEST_F(LightPicture, BandsFitTogether) {
     const Picture half = drawn();
     std::size_t same = 0;
     for (std::size_t y = 0; y < 150; ++y)
-        for (std::size_t x = 0; x < 8192; ++x) same += half.pixels[y * 8192 + x] == large.pixels[2 * y * 16384 + 2 * x] ? 1u : 0u;
+        for (std::size_t x = 0; x < 8192; ++x)
+            same += half.pixels[y * 8192 + x] == large.pixels[2 * y * 16384 + 2 * x] ? 1u : 0u;
     EXPECT_GT(static_cast<double>(same), 0.95 * 8192 * 150);
 }
 

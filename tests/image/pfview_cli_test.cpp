@@ -29,7 +29,7 @@ TEST_F(PfviewCli, WritesStatisticsAndNothingElseToStdout) {
         run("a.pf_vox --screenshot a.png --size 32x32 --view steps --camera 3,2,20,3,2,3,30 --stats-json -");
     EXPECT_EQ(r.exitCode, 0) << r.err;
     EXPECT_THAT(r.out, StartsWith("{"));
-    EXPECT_THAT(r.out, HasSubstr("\"cappedRays\": 0"));
+    EXPECT_THAT(r.out, HasSubstr("\"stepLimitRays\": 0"));
     EXPECT_THAT(r.out, HasSubstr("\"view\": \"steps\""));
 }
 
@@ -45,15 +45,27 @@ TEST_F(PfviewCli, HelpAndVersionGoToStdout) {
 TEST_F(PfviewCli, WrongUsageIsShortAndOnStderr) {
     writeRoom("a.pf_vox");
     const std::string picture = "a.pf_vox --screenshot a.png ";
-    for (const std::string& arguments :
-         {std::string("--no-such-option"), std::string("a.pf_vox --frames 2"), picture + "--exposure 17", picture + "--tonemap film",
-          picture + "--probes a.pf_probe --no-probes", picture + "--probe -1",
-          std::string("a.pf_vox --camera-path b.json"), std::string("--screenshot a.png"), picture + "--frames 0",
-          picture + "--lod-pixels -1", picture + "--size 0x5",
-          picture + "--size 99999x5", picture + "--size 12", picture + "--camera 1,2,3",
-          picture + "--camera 1,2,3,1,2,3", picture + "--camera 1,2,3,nan,2,3",
-          picture + "--camera 1,2,3,4,5,6,180", picture + "--view nothing", picture + "--samples 0",
-          picture + "--samples 1e9", picture + "surplus"}) {
+    for (const std::string& arguments : {std::string("--no-such-option"),
+                                         std::string("a.pf_vox --frames 2"),
+                                         picture + "--exposure 17",
+                                         picture + "--tonemap film",
+                                         picture + "--probes a.pf_probe --no-probes",
+                                         picture + "--probe -1",
+                                         std::string("a.pf_vox --camera-path b.json"),
+                                         std::string("--screenshot a.png"),
+                                         picture + "--frames 0",
+                                         picture + "--lod-pixels -1",
+                                         picture + "--size 0x5",
+                                         picture + "--size 99999x5",
+                                         picture + "--size 12",
+                                         picture + "--camera 1,2,3",
+                                         picture + "--camera 1,2,3,1,2,3",
+                                         picture + "--camera 1,2,3,nan,2,3",
+                                         picture + "--camera 1,2,3,4,5,6,180",
+                                         picture + "--view nothing",
+                                         picture + "--samples 0",
+                                         picture + "--samples 1e9",
+                                         picture + "surplus"}) {
         const Outcome r = run(arguments);
         EXPECT_EQ(r.exitCode, 2) << arguments;
         EXPECT_THAT(r.out, IsEmpty()) << arguments;
@@ -65,11 +77,13 @@ TEST_F(PfviewCli, WrongUsageIsShortAndOnStderr) {
 
 TEST_F(PfviewCli, WhatIsMisspeltIsNamedWithWhatThereIs) {
     writeRoom("a.pf_vox");
-    EXPECT_THAT(run("a.pf_vox --screnshot a.png").err, HasSubstr("unknown option --screnshot; did you mean --screenshot?"));
+    EXPECT_THAT(run("a.pf_vox --screnshot a.png").err,
+                HasSubstr("unknown option --screnshot; did you mean --screenshot?"));
     const std::string view = run("a.pf_vox --screenshot a.png --view nromals").err;
     EXPECT_THAT(view, HasSubstr("did you mean normals?"));
     EXPECT_THAT(view, HasSubstr("atlas-normals or atlas-depth"));
-    EXPECT_THAT(run("a.pf_vox --screenshot a.png --tonemap film").err, HasSubstr("reinhard, aces or neutral"));
+    EXPECT_THAT(run("a.pf_vox --screenshot a.png --tonemap film").err,
+                HasSubstr("reinhard, aces or neutral"));
     const Outcome picture = run("a.pf_vox --screenshot a.jpg");
     EXPECT_EQ(picture.exitCode, 2);
     EXPECT_THAT(picture.err, HasSubstr("'a.jpg' does not end in .png"));
@@ -85,9 +99,12 @@ TEST_F(PfviewCli, DamagedFilesSayWhatToDo) {
     std::string other = good;
     other[8] = 2;  // the major version
     write("b.pf_vox", other);
-    EXPECT_THAT(run("b.pf_vox --screenshot a.png").err,
-                HasSubstr("PF_VOX 2.0; this program reads 1.x: convert the source again with this version of vox2pf"));
-    write("b.pf_vox", "neither this program's nor its predecessor's, and long enough for a header .............");
+    EXPECT_THAT(
+        run("b.pf_vox --screenshot a.png").err,
+        HasSubstr(
+            "PF_VOX 2.0; this program reads 1.x: convert the source again with this version of vox2pf"));
+    write("b.pf_vox",
+          "neither this program's nor its predecessor's, and long enough for a header .............");
     EXPECT_THAT(run("b.pf_vox --screenshot a.png").err, HasSubstr("vox2pf convert <source> -o 'b.pf_vox'"));
 }
 
@@ -154,12 +171,15 @@ TEST_F(PfviewCli, FramesGiveThePictureOfAllTheirSamples) {
 
 TEST_F(PfviewCli, ACameraPathGivesNumberedPictures) {
     writeRoom("a.pf_vox");
-    write("path.json",
-          R"({"cameras": [{"position": [3, 2, 20], "target": [3, 2, 0]}, {"position": [9, 5, 20], "target": [3, 2, 0]}]})");
-    const std::string flight = "a.pf_vox --size 32x32 --samples 1 --screenshot f.png --frames 3 --camera-path ";
+    write(
+        "path.json",
+        R"({"cameras": [{"position": [3, 2, 20], "target": [3, 2, 0]}, {"position": [9, 5, 20], "target": [3, 2, 0]}]})");
+    const std::string flight =
+        "a.pf_vox --size 32x32 --samples 1 --screenshot f.png --frames 3 --camera-path ";
     const Outcome r = run(flight + "path.json");
     EXPECT_EQ(r.exitCode, 0) << r.err;
-    EXPECT_EQ(run("a.pf_vox --size 32x32 --samples 1 --screenshot last.png --camera 9,5,20,3,2,0,40").exitCode, 0);
+    EXPECT_EQ(
+        run("a.pf_vox --size 32x32 --samples 1 --screenshot last.png --camera 9,5,20,3,2,0,40").exitCode, 0);
     EXPECT_EQ(contentOf(folder_ / "f-0003.png"), contentOf(folder_ / "last.png"));
     EXPECT_NE(contentOf(folder_ / "f-0001.png"), contentOf(folder_ / "f-0002.png"));
     EXPECT_FALSE(fs::exists(folder_ / "f-0004.png"));
@@ -173,7 +193,8 @@ TEST_F(PfviewCli, ACameraPathGivesNumberedPictures) {
 
 TEST_F(PfviewCli, AFolderShowsItsScene) {
     writeRoom("in/room.pf_vox");
-    write("in/s.toml", "[[models]]\npath = 'room.pf_vox'\n[[models]]\npath = 'room.pf_vox'\ntranslateVec = [8, 0, 0]\n");
+    write("in/s.toml",
+          "[[models]]\npath = 'room.pf_vox'\n[[models]]\npath = 'room.pf_vox'\ntranslateVec = [8, 0, 0]\n");
     const Outcome r = run("in --screenshot a.png --size 32x32 --samples 1 --stats-json -");
     EXPECT_EQ(r.exitCode, 0) << r.err;
     EXPECT_THAT(r.out, HasSubstr("\"instances\": 2,"));
@@ -210,7 +231,8 @@ TEST_F(PfviewCli, ListsDevices) {
 }
 
 TEST_F(PfviewCli, ResultsThatCannotBeWrittenAreAFailure) {
-    const Outcome r = run("--list-devices > /dev/full 2> err; exit $?; :");  // what run() appends is for the last word
+    const Outcome r =
+        run("--list-devices > /dev/full 2> err; exit $?; :");  // what run() appends is for the last word
     EXPECT_EQ(r.exitCode, 3);
     EXPECT_THAT(r.err, HasSubstr("standard output"));
 }

@@ -1,4 +1,5 @@
-// pfview as a program, with probes: which are taken, what happens when they do not fit, and what its statistics say.
+// pfview as a program, with probes: which are taken, what happens when they do not fit, and what its
+// statistics say.
 #include <nlohmann/json.hpp>
 
 #include "png.hpp"
@@ -27,7 +28,8 @@ class PfviewLight : public PfviewCli {
     json statistics(const std::string& arguments) const {
         const Outcome r = run("hall.toml --size 64x40 --validate --stats-json - " + arguments);
         EXPECT_EQ(r.exitCode, 0) << r.err;
-        const json schema = json::parse(contentOf(fs::path(PFVOX_TESTS_DIR) / "../docs/schema/view.schema.json"));
+        const json schema =
+            json::parse(contentOf(fs::path(PFVOX_TESTS_DIR) / "../docs/schema/view.schema.json"));
         json value = json::parse(r.out, nullptr, false);
         for (const std::string& complaint : SchemaChecker::check(schema, value)) ADD_FAILURE() << complaint;
         return value;
@@ -124,14 +126,17 @@ TEST_F(PfviewLight, ProbesThatCannotBeReadAreErrors) {
     write("older.pf_probe", older);
     const Outcome version = run(picture + "older.pf_probe");
     EXPECT_EQ(version.exitCode, 5) << version.err;
-    EXPECT_THAT(version.err, HasSubstr("bake again: probe-bake 'hall.toml' -o 'older.pf_probe'")) << "where it was asked for";
+    EXPECT_THAT(version.err, HasSubstr("bake again: probe-bake 'hall.toml' -o 'older.pf_probe'"))
+        << "where it was asked for";
     EXPECT_FALSE(fs::exists(folder_ / "a.png"));
 }
 
 TEST_F(PfviewLight, ViewsOfProbesNeedProbes) {
     const Outcome r = run("hall.toml --size 8x8 --screenshot a.png --view tiers");
     EXPECT_EQ(r.exitCode, 3);
-    EXPECT_THAT(r.err, HasSubstr("the view 'tiers' shows probes, and there are none; bake them: probe-bake 'hall.toml'"));
+    EXPECT_THAT(
+        r.err,
+        HasSubstr("the view 'tiers' shows probes, and there are none; bake them: probe-bake 'hall.toml'"));
     addProbes();
     const Outcome beyond = run("hall.toml --size 8x8 --screenshot a.png --view atlas-light --probe 24");
     EXPECT_EQ(beyond.exitCode, 4);
@@ -158,9 +163,11 @@ TEST_F(PfviewLight, MeasuresFramesWithoutAPicture) {
 
 TEST_F(PfviewLight, ACameraPathIsLitToo) {
     addProbes();
-    write("path.json",
-          R"({"cameras": [{"position": [2.4, 1.5, 6], "target": [2.7, 1, 0]}, {"position": [1, 1.2, 5], "target": [2.7, 1, 0]}]})");
-    const json flown = statistics("--screenshot f.png --frames 3 --camera-path path.json --exposure 1 --tonemap aces");
+    write(
+        "path.json",
+        R"({"cameras": [{"position": [2.4, 1.5, 6], "target": [2.7, 1, 0]}, {"position": [1, 1.2, 5], "target": [2.7, 1, 0]}]})");
+    const json flown =
+        statistics("--screenshot f.png --frames 3 --camera-path path.json --exposure 1 --tonemap aces");
     EXPECT_EQ(flown["frames"]["count"], 3);
     EXPECT_EQ(flown["picture"]["toneMap"], "aces");
     EXPECT_EQ(flown["picture"]["exposureStops"], 1.0);

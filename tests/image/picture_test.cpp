@@ -34,7 +34,7 @@ TEST_F(PictureTest, RoomInEveryView) {
         PFVOX_ASSERT_VALUE(const Shot, shot, draw(build(demoRoom()), settings));
         EXPECT_TRUE(matchesGolden(shot.picture, std::string("room-") + name));
         EXPECT_EQ(shot.statistics.cameraRays, 320u * 240u * 4u);
-        EXPECT_EQ(shot.statistics.cappedRays, 0u);
+        EXPECT_EQ(shot.statistics.stepLimitRays, 0u);
     }
 }
 
@@ -43,7 +43,7 @@ TEST_F(PictureTest, ComposedScene) {
     EXPECT_TRUE(matchesGolden(shot.picture, "composed-final"));
 }
 
-// The reference caster's picture of the same scene: what is hit, its normal and its colour, pixel by pixel.
+// The reference caster's picture of the same scene: what is hit, its normal and its color, pixel by pixel.
 TEST_F(PictureTest, AgreesWithTheReferenceCaster) {
     for (const VoxelAsset& voxels : {demoRoom(), composedScene()}) {
         const OctreeAsset asset = build(voxels);
@@ -53,12 +53,13 @@ TEST_F(PictureTest, AgreesWithTheReferenceCaster) {
             settings.mode = mode;
             PFVOX_ASSERT_VALUE(const Shot, shot, draw(asset, settings));
             const viewer::Picture reference = referencePicture(asset, cameraOf(asset, settings), settings);
-            const auto hits = static_cast<std::size_t>(std::ranges::count_if(
-                reference.pixels, [](std::uint32_t pixel) { return pixel != 0; }));
+            const auto hits = static_cast<std::size_t>(
+                std::ranges::count_if(reference.pixels, [](std::uint32_t pixel) { return pixel != 0; }));
             EXPECT_GT(hits, 10'000u);
-            EXPECT_LE(differingShare(shot.picture, reference), 0.001) << toString(mode);
+            EXPECT_LE(differingFraction(shot.picture, reference), 0.001) << toString(mode);
             // Pixels whose ray passes an edge within a rounding may be hits on one side only.
-            EXPECT_NEAR(static_cast<double>(shot.statistics.hits), static_cast<double>(hits), 0.001 * 320 * 240);
+            EXPECT_NEAR(static_cast<double>(shot.statistics.hits), static_cast<double>(hits),
+                        0.001 * 320 * 240);
         }
     }
 }

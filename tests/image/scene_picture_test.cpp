@@ -55,7 +55,7 @@ TEST_F(ScenePicture, DemoSceneByTwoOfItsCameras) {
             const viewer::Picture, picture,
             renderer.render(device(), scene, viewer::viewCameraOf(*camera), settings, statistics));
         EXPECT_TRUE(matchesGolden(picture, std::string("scene-") + name));
-        EXPECT_EQ(statistics.cappedRays, 0u);
+        EXPECT_EQ(statistics.stepLimitRays, 0u);
     }
 }
 

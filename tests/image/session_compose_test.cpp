@@ -1,4 +1,5 @@
-// Composing in the viewer without its window: what commands, drops, clicks and drags do to document and picture.
+// Composing in the viewer without its window: what commands, drops, clicks and drags do to document and
+// picture.
 #include <gmock/gmock.h>
 
 #include "support/session_fixture.hpp"
@@ -121,7 +122,8 @@ TEST_F(ComposeTest, AClickSelectsTheModelAndAHandleDragsIt) {
         session->update(now);
     }
     EXPECT_NEAR(x(0), 0.25, 1e-6);
-    EXPECT_NEAR(session->shown()->loaded.parts[0].worldFromAsset[3].x, 0.25, 1e-6) << "the device's scene moved too";
+    EXPECT_NEAR(session->shown()->loaded.parts[0].worldFromAsset[3].x, 0.25, 1e-6)
+        << "the device's scene moved too";
     press('Z', true);
     EXPECT_EQ(x(0), 0.0) << "a drag is one step";
     EXPECT_EQ(editor().selected(), 0u);
@@ -132,7 +134,8 @@ TEST_F(ComposeTest, AClickSelectsTheModelAndAHandleDragsIt) {
 
 TEST_F(ComposeTest, ProbesAreClickedWhereTheyAreDrawn) {
     start(folder / "s.toml");
-    ASSERT_TRUE(editor().setProbes({.position = glm::dvec3(-0.5, 1.2, 0), .stepMetres = glm::dvec3(0.6), .count = glm::uvec3(3, 2, 2)}));
+    ASSERT_TRUE(editor().setProbes(
+        {.position = glm::dvec3(-0.5, 1.2, 0), .stepMetres = glm::dvec3(0.6), .count = glm::uvec3(3, 2, 2)}));
     settle();
     EXPECT_EQ(session->shown()->loaded.probes.counts, glm::uvec3(3, 2, 2));
     const glm::dvec2 there = partsOf(session->placeOfProbe(4));

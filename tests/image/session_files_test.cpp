@@ -44,15 +44,17 @@ TEST_F(SessionFilesTest, Missing) {
 }
 
 TEST_F(SessionFilesTest, Foreign) {
-    EXPECT_THAT(stripAfterOpening("\x89PNG\r\n\x1a\n and so on, long enough to have a header of some kind ......."),
-                AllOf(HasSubstr("bad.pf_vox"), HasSubstr("vox2pf convert")));
+    EXPECT_THAT(
+        stripAfterOpening("\x89PNG\r\n\x1a\n and so on, long enough to have a header of some kind ......."),
+        AllOf(HasSubstr("bad.pf_vox"), HasSubstr("vox2pf convert")));
     expectMendable();
 }
 
 TEST_F(SessionFilesTest, OfAnotherVersion) {
     std::string other = bytes;
     other[8] = 9;  // layout::Header::versionMajor
-    EXPECT_THAT(stripAfterOpening(other), AllOf(HasSubstr("9."), HasSubstr("convert the source again with this version")));
+    EXPECT_THAT(stripAfterOpening(other),
+                AllOf(HasSubstr("9."), HasSubstr("convert the source again with this version")));
     expectMendable();
 }
 
@@ -70,7 +72,8 @@ TEST_F(SessionFilesTest, Damaged) {
     expectMendable();
 }
 
-// A file that grows while it is looked at counts only when it rests; whatever was read in between, the end is right.
+// A file that grows while it is looked at counts only when it rests; whatever was read in between, the end is
+// right.
 TEST_F(SessionFilesTest, ChangingWhileItIsRead) {
     session->open(folder / "other.pf_vox");
     settle();
@@ -79,7 +82,8 @@ TEST_F(SessionFilesTest, ChangingWhileItIsRead) {
     const std::string large = readText(folder / "large.pf_vox");
     std::thread writer([&] {
         for (int piece = 1; piece <= 20; ++piece) {
-            writeText(folder / "other.pf_vox", large.substr(0, large.size() * static_cast<std::size_t>(piece) / 20));
+            writeText(folder / "other.pf_vox",
+                      large.substr(0, large.size() * static_cast<std::size_t>(piece) / 20));
             std::this_thread::sleep_for(std::chrono::milliseconds(7));
         }
     });
@@ -96,7 +100,9 @@ TEST_F(SessionFilesTest, ChangingWhileItIsRead) {
 }
 
 TEST_F(SessionFilesTest, AModelOfASceneThatBreaksWhileOneEdits) {
-    writeText(folder / "s.toml", "[[models]]\npath = 'good.pf_vox'\n[[models]]\npath = 'other.pf_vox'\ntranslateVec = [2, 0, 0]\n");
+    writeText(
+        folder / "s.toml",
+        "[[models]]\npath = 'good.pf_vox'\n[[models]]\npath = 'other.pf_vox'\ntranslateVec = [2, 0, 0]\n");
     session->open(folder / "s.toml");
     settle();
     press('N');
@@ -109,7 +115,8 @@ TEST_F(SessionFilesTest, AModelOfASceneThatBreaksWhileOneEdits) {
     EXPECT_NEAR(scene().models[0].translateMetres.x, 0.2, 1e-6) << "edits go on in the document";
     writeText(folder / "other.pf_vox", bytes);
     settle();
-    EXPECT_NEAR(session->shown()->loaded.parts[0].worldFromAsset[3].x, 0.2, 1e-6) << "and show when it is mended";
+    EXPECT_NEAR(session->shown()->loaded.parts[0].worldFromAsset[3].x, 0.2, 1e-6)
+        << "and show when it is mended";
 }
 
 TEST_F(SessionFilesTest, ABrokenSceneFile) {
@@ -118,7 +125,8 @@ TEST_F(SessionFilesTest, ABrokenSceneFile) {
     settle();
     EXPECT_THAT(log.strip().value_or(""), AllOf(HasSubstr("line 3"), HasSubstr("scaleVec")));
     EXPECT_EQ(session->shown()->path.file, folder / "good.pf_vox");
-    EXPECT_TRUE(scene().models.size() == 1 && scene().models[0].path == "good.pf_vox") << "what is edited is what is shown";
+    EXPECT_TRUE(scene().models.size() == 1 && scene().models[0].path == "good.pf_vox")
+        << "what is edited is what is shown";
 }
 
 }  // namespace

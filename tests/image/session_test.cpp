@@ -1,4 +1,5 @@
-// The interactive viewer without its window: what is loaded, what commands do, what happens when files change.
+// The interactive viewer without its window: what is loaded, what commands do, what happens when files
+// change.
 #include <gmock/gmock.h>
 
 #include "png.hpp"
@@ -14,7 +15,9 @@ using ::testing::HasSubstr;
 
 namespace fs = std::filesystem;
 
-fs::path hallProbes() { return fs::path(PFVOX_TESTS_DIR) / "image/golden/hall.pf_probe"; }
+fs::path hallProbes() {
+    return fs::path(PFVOX_TESTS_DIR) / "image/golden/hall.pf_probe";
+}
 
 using SessionTest = SessionFixture;
 
@@ -88,7 +91,8 @@ TEST_F(SessionTest, PickTellsVoxelMaterialModelAndInstance) {
               "[[models]]\npath = 'box.pf_vox'\nname = 'first box'\ntranslateVec = [3, 0, 0]\n"
               "[[models]]\npath = 'box.pf_vox'\nname = 'the box'\n");
     start({.path = folder / "s.toml",
-           .camera = {.camera = ViewCamera{.position = {0.45, 0.35, 5.0}, .target = {0.45, 0.35, 0.0}}, .name = {}}});
+           .camera = {.camera = ViewCamera{.position = {0.45, 0.35, 5.0}, .target = {0.45, 0.35, 0.0}},
+                      .name = {}}});
     drawn();
     session->pickAt({0.5, 0.5});
     ASSERT_TRUE(session->pick());
@@ -230,8 +234,9 @@ TEST_F(SessionTest, ProbesBesideTheSceneLightItAndAreReadAgain) {
 
     // Broken, cut short, from another format: the last good ones stay, and the strip tells what to do.
     const std::string good = readText(folder / "hall.pf_probe");
-    for (const std::string& bad : {std::string("no probes at all, but long enough for a header ................"),
-                                   good.substr(0, good.size() / 2), readText(folder / "hall.pf_vox")}) {
+    for (const std::string& bad :
+         {std::string("no probes at all, but long enough for a header ................"),
+          good.substr(0, good.size() / 2), readText(folder / "hall.pf_vox")}) {
         writeText(folder / "hall.pf_probe", bad);
         settle();
         ASSERT_TRUE(log.strip());

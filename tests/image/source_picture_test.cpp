@@ -1,6 +1,8 @@
-// The whole way, from a source that others made to pixels: importer, builder, encoder, decoder, GPU scene, picture.
+// The whole way, from a source that others made to pixels: importer, builder, encoder, decoder, GPU scene,
+// picture.
 //
-// The goldens of the corpus models are pictures of models of the mmmm collection, CC BY 4.0 (tests/image/golden/README.md).
+// The goldens of the corpus models are pictures of models of the mmmm collection, CC BY 4.0
+// (tests/image/golden/README.md).
 #include <pfvox/convert.hpp>
 
 #include "support/corpus.hpp"
@@ -25,7 +27,7 @@ class SourcePicture : public PictureTest {
         const viewer::PictureSettings settings{.width = 400, .height = 300, .lighting = {}};
         PFVOX_ASSERT_VALUE(const Shot, shot, draw(asset, settings));
         EXPECT_TRUE(matchesGolden(shot.picture, name));
-        EXPECT_EQ(shot.statistics.cappedRays, 0u);
+        EXPECT_EQ(shot.statistics.stepLimitRays, 0u);
     }
     static std::filesystem::path corpus(const std::string& name) {
         return std::filesystem::path(PFVOX_CORPUS_DIR) / "vox" / name;

@@ -55,7 +55,7 @@ assets='SOURCES assets/lamp.vox BASE_DIR assets'
 bad "$find
 pfvox_add_assets(a OUTPUT_DIR out)" 'pfvox_add_assets(a): SOURCES is missing'
 bad "$find
-pfvox_add_assets(a COLOUR red $assets)" 'pfvox_add_assets(a): unknown argument: COLOUR red'
+pfvox_add_assets(a COLOR red $assets)" 'pfvox_add_assets(a): unknown argument: COLOR red'
 bad "$find
 pfvox_add_assets(a $assets SETTINGS)" 'pfvox_add_assets(a): nothing follows SETTINGS'
 bad "$find

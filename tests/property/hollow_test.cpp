@@ -1,5 +1,5 @@
 // Hollowing: what can be seen stays, what cannot be seen merges. The oracle asks for every voxel and its
-// neighbours.
+// neighbors.
 #include <pfvox/hollow.hpp>
 
 #include <gtest/gtest.h>

@@ -1,4 +1,5 @@
-// Merging sources other than .vox: several instances become one model that shows the same world, the last one on top.
+// Merging sources other than .vox: several instances become one model that shows the same world, the last one
+// on top.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -32,14 +33,14 @@ struct World {
     std::uint64_t replaced = 0;
 };
 
-/// The world cell by cell, from the centres of voxels; later instances replace earlier ones.
+/// The world cell by cell, from the centers of voxels; later instances replace earlier ones.
 World worldOf(const VoxelAsset& asset) {
     World world;
     for (const Instance& instance : asset.instances) {
         const VoxelModel& model = asset.models[instance.model];
         for (const Voxel& v : voxelsIn(model, model.bounds())) {
-            const glm::dvec3 centre = instance.worldFromModel * glm::dvec4{glm::dvec3{v.position} + 0.5, 1.0};
-            const glm::ivec3 cell{glm::floor(centre / kVoxel)};
+            const glm::dvec3 center = instance.worldFromModel * glm::dvec4{glm::dvec3{v.position} + 0.5, 1.0};
+            const glm::ivec3 cell{glm::floor(center / kVoxel)};
             const auto [at, isNew] =
                 world.cells.insert_or_assign(std::array{cell.x, cell.y, cell.z}, asset.materials[v.material]);
             world.replaced += isNew ? 0u : 1u;

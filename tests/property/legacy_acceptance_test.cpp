@@ -1,6 +1,6 @@
-// The acceptance against the thesis program: for every pair of its .pf_vox and the .vox that it was made from, our octree of
-// the .vox has the same voxels as its octree, the colours of the source (its own changed some), and all octrees
-// together have fewer nodes and leaves.
+// The acceptance against the thesis program: for every pair of its .pf_vox and the .vox that it was made
+// from, our octree of the .vox has the same voxels as its octree, the colors of the source (its own changed
+// some), and all octrees together have fewer nodes and leaves.
 //
 // Both the thesis's file and the source are read here by readers that share no line with the importers.
 #include <gtest/gtest.h>
@@ -76,7 +76,8 @@ ThesisFile readThesis(const std::string& bytes) {
         for (unsigned slot = 0; slot < 8; ++slot) {
             if (((valid >> slot) & 1u) == 0) continue;
             const int k = static_cast<int>(slot);
-            const Cell p{corner[0] + (k & 1) * edge, corner[1] + (k >> 1 & 1) * edge, corner[2] + (k >> 2) * edge};
+            const Cell p{corner[0] + (k & 1) * edge, corner[1] + (k >> 1 & 1) * edge,
+                         corner[2] + (k >> 2) * edge};
             if (((leaf >> slot) & 1u) != 0) {
                 fill(p, edge, colorOf(attachment++));
             } else {
@@ -147,7 +148,7 @@ void comparePair(const std::filesystem::path& legacy, const std::filesystem::pat
     ASSERT_FALSE(expected.empty());
     EXPECT_TRUE(std::ranges::equal(ours, theirs, {}, &Colors::value_type::first, &Colors::value_type::first))
         << ours.size() << " voxels, the thesis has " << theirs.size();
-    EXPECT_TRUE(ours == expected) << "a voxel has another colour than in the source";
+    EXPECT_TRUE(ours == expected) << "a voxel has another color than in the source";
     for (const auto& [cell, rgba] : theirs) {
         const auto source = expected.find(cell);
         if (source != expected.end() && source->second != rgba) ++sums.changedByThesis;
@@ -161,14 +162,16 @@ void comparePair(const std::filesystem::path& legacy, const std::filesystem::pat
     sums.leaves += s.leaves;
 }
 
-TEST(LegacyAcceptance, SameVoxelsTrueColoursFewerNodesAndLeaves) {
+TEST(LegacyAcceptance, SameVoxelsTrueColorsFewerNodesAndLeaves) {
     const auto files = corpusFiles("legacy", ".pf_vox");
     if (files.empty()) {
-        GTEST_SKIP() << "corpus/legacy is absent: no pairs to compare (set PFVOX_CORPUS_DIR to the corpus folder)";
+        GTEST_SKIP()
+            << "corpus/legacy is absent: no pairs to compare (set PFVOX_CORPUS_DIR to the corpus folder)";
     }
     Sums sums;
     for (const auto& file : files) {
-        const auto vox = std::filesystem::path(PFVOX_CORPUS_DIR) / "vox" / "mmmm" / file.stem().concat(".vox");
+        const auto vox =
+            std::filesystem::path(PFVOX_CORPUS_DIR) / "vox" / "mmmm" / file.stem().concat(".vox");
         SCOPED_TRACE(file.filename());
         ASSERT_TRUE(std::filesystem::exists(vox)) << "the source of this file is missing";
         ASSERT_NO_FATAL_FAILURE(comparePair(file, vox, sums));
@@ -181,7 +184,7 @@ TEST(LegacyAcceptance, SameVoxelsTrueColoursFewerNodesAndLeaves) {
     };
     show("pairs", sums.pairs);
     show("voxels", sums.voxels);
-    show("voxels_that_the_thesis_recoloured", sums.changedByThesis);
+    show("voxels_that_the_thesis_recolored", sums.changedByThesis);
     show("leaves_of_the_thesis", sums.thesisLeaves);
     show("leaves", sums.leaves);
     show("nodes_of_the_thesis", sums.thesisNodes);

@@ -1,4 +1,5 @@
-// Level of detail: every node's colour, coverage and material against an oracle that asks for every voxel of its cube.
+// Level of detail: every node's color, coverage and material against an oracle that asks for every voxel of
+// its cube.
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
@@ -18,7 +19,9 @@ namespace {
 
 constexpr glm::ivec3 kSteps[6] = {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}};
 
-OctreeAsset buildWithLod(const VoxelAsset& asset) { return buildOctrees(asset, Limits{}, {.lod = true}).value(); }
+OctreeAsset buildWithLod(const VoxelAsset& asset) {
+    return buildOctrees(asset, Limits{}, {.lod = true}).value();
+}
 
 double linearOf(std::uint8_t srgb) {
     return shared::linearFromSrgb(srgb / 255.0);
@@ -34,7 +37,8 @@ struct Expected {
     std::set<std::array<int, 3>> columns;  ///< axis and the two other coordinates
 };
 
-Expected lookAt(const VoxelModel& model, const std::vector<Material>& materials, glm::ivec3 corner, int edge) {
+Expected lookAt(const VoxelModel& model, const std::vector<Material>& materials, glm::ivec3 corner,
+                int edge) {
     Expected expected;
     const VoxelBox box{corner, corner + edge};
     for (const test::Voxel& v : test::voxelsIn(model, box)) {
@@ -75,7 +79,8 @@ class LodOracle {
     void checkNode(std::uint32_t index, const Expected& expected, int edge) {
         const std::uint32_t color = region_.lod.colors[index];
         const double coverage = static_cast<double>(expected.columns.size()) / (3.0 * edge * edge);
-        EXPECT_EQ(color >> 24, static_cast<std::uint32_t>(std::ceil(255 * coverage - 1e-9))) << "node " << index;
+        EXPECT_EQ(color >> 24, static_cast<std::uint32_t>(std::ceil(255 * coverage - 1e-9)))
+            << "node " << index;
         glm::dvec3 sum{0};
         int total = 0;
         int most = 0;

@@ -37,8 +37,8 @@ TEST(PlaneLinker, RebuildsWhatWasSplit) {
         tree.depth = region.tree.depth;
         PooledVector<std::uint32_t> lookup;
         const auto values = linker.linkRegion(
-            octree::cutPlanes(bytes, region.tree.nodes.size(), octree::countBranches(region.tree), true), tree,
-            lookup);
+            octree::cutPlanes(bytes, region.tree.nodes.size(), octree::countBranches(region.tree), true),
+            tree, lookup);
         ASSERT_TRUE(values) << values.error().message;
         EXPECT_EQ(*values, region.valueCount());
         EXPECT_EQ(tree.nodes, region.tree.nodes);

@@ -1,5 +1,5 @@
-// Probe files: what is written is read; the bytes follow from the probes alone, whatever the order, the shards and the
-// interruptions.
+// Probe files: what is written is read; the bytes follow from the probes alone, whatever the order, the
+// shards and the interruptions.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -59,8 +59,11 @@ TEST(ProbeFile, ManyProbesHaveWideIndices) {
     ProbeFieldInfo info = test::probeInfo({65535, 1, 1}, {0, 0, 1, 0});
     info.range = {65000, 65002};
     ProbeField field = test::probeField(info, false);
-    field.proximity = ProximityGrid{.start = {}, .step = glm::vec3{1}, .counts = {2, 1, 1},
-                                    .probes = {65534, 7, kNoProbe, kNoProbe, kNoProbe, kNoProbe, kNoProbe, kNoProbe}};
+    field.proximity =
+        ProximityGrid{.start = {},
+                      .step = glm::vec3{1},
+                      .counts = {2, 1, 1},
+                      .probes = {65534, 7, kNoProbe, kNoProbe, kNoProbe, kNoProbe, kNoProbe, kNoProbe}};
     DiagnosticList diagnostics;
     const auto decoded = decodePfProbe(encodePfProbe(field, {}).value(), Limits{}, diagnostics);
     ASSERT_TRUE(decoded) << describe(decoded.error());
@@ -72,12 +75,16 @@ TEST(ProbeFile, ManyProbesHaveWideIndices) {
 }
 
 TEST(ProbeFile, ProfilesHaveTheSizesOfTheDocument) {
-    const auto bytesOf = [](ProbeProfile profile, ProbeLayer layer) { return resolutionOf(profile).bytesOf(layer); };
-    EXPECT_EQ(bytesOf(ProbeProfile::Thesis, ProbeLayer::DepthNormal) + bytesOf(ProbeProfile::Thesis, ProbeLayer::Light),
+    const auto bytesOf = [](ProbeProfile profile, ProbeLayer layer) {
+        return resolutionOf(profile).bytesOf(layer);
+    };
+    EXPECT_EQ(bytesOf(ProbeProfile::Thesis, ProbeLayer::DepthNormal) +
+                  bytesOf(ProbeProfile::Thesis, ProbeLayer::Light),
               8388608u);
     EXPECT_EQ(bytesOf(ProbeProfile::Thesis, ProbeLayer::MinDepth), 8192u);
     EXPECT_EQ(bytesOf(ProbeProfile::Default, ProbeLayer::MinDepth), 2048u);
-    EXPECT_EQ(resolutionOf(ProbeProfile::Default).bytesPerProbe(), 512u * 512 * 4 + 256 * 256 * 4 + 2048 + 400 + 1024);
+    EXPECT_EQ(resolutionOf(ProbeProfile::Default).bytesPerProbe(),
+              512u * 512 * 4 + 256 * 256 * 4 + 2048 + 400 + 1024);
     EXPECT_EQ(resolutionOf(ProbeProfile::Compact).bytesPerProbe() + 32, 1456u);
     for (const auto profile : {ProbeProfile::Thesis, ProbeProfile::Default, ProbeProfile::Compact})
         EXPECT_EQ(profileOf(resolutionOf(profile)), profile);
@@ -204,11 +211,13 @@ TEST(ProbeFile, ShardsMergeToTheBytesOfTheWhole) {
     for (const auto& cut : cuts) {
         std::vector<std::filesystem::path> shards;
         for (std::size_t i = 0; i + 1 < cut.size(); ++i) {
-            shards.insert(shards.begin(), writeShard(folder / ("s" + std::to_string(i)), shardInfo(info, cut[i], cut[i + 1])));
+            shards.insert(shards.begin(), writeShard(folder / ("s" + std::to_string(i)),
+                                                     shardInfo(info, cut[i], cut[i + 1])));
         }
         DiagnosticList diagnostics;
-        const auto merged = mergeProbeFields(shards, folder / "whole.pf_probe",
-                                             {.contentKey = {{3}}, .proximity = proximity}, Limits{}, diagnostics);
+        const auto merged =
+            mergeProbeFields(shards, folder / "whole.pf_probe", {.contentKey = {{3}}, .proximity = proximity},
+                             Limits{}, diagnostics);
         ASSERT_TRUE(merged) << describe(merged.error());
         EXPECT_EQ(test::readText(folder / "whole.pf_probe"), expected);
         EXPECT_TRUE(diagnostics.entries().empty());
@@ -253,10 +262,12 @@ TEST_F(ProbeMergeRefusal, NamesMissingAndRepeatedProbes) {
     std::filesystem::remove(folder_ / "whole");
     EXPECT_THAT(refusal({front_}), HasSubstr("6 of 12 probes are in no shard: 6:12"));
     EXPECT_THAT(refusal({back_}), HasSubstr("0:6"));
-    EXPECT_THAT(refusal({shardInfo(info_, 1, 3), shardInfo(info_, 4, 9)}), HasSubstr("5 of 12 probes are in no shard: 0, 3, 9:12"));
+    EXPECT_THAT(refusal({shardInfo(info_, 1, 3), shardInfo(info_, 4, 9)}),
+                HasSubstr("5 of 12 probes are in no shard: 0, 3, 9:12"));
     EXPECT_THAT(refusal({shardInfo(info_, 0, 8), back_}), HasSubstr("probes 6:8 are also in another shard"));
     EXPECT_THAT(refusal({info_, shardInfo(info_, 3, 4)}), HasSubstr("probes 3 are also in another shard"));
-    EXPECT_THAT(refusal({shardInfo(info_, 1, 3), shardInfo(info_, 4, 9)}, true), HasSubstr("1 of 12 probes are in no shard: 3"));
+    EXPECT_THAT(refusal({shardInfo(info_, 1, 3), shardInfo(info_, 4, 9)}, true),
+                HasSubstr("1 of 12 probes are in no shard: 3"));
     EXPECT_EQ(refusal({shardInfo(info_, 1, 3), shardInfo(info_, 3, 9)}, true), "merged");
 }
 
@@ -330,7 +341,8 @@ TEST_F(ProbeMergeRefusal, OtherContentKeysOfOneDeviceAreOfTwoBakes) {
 
 TEST_F(ProbeMergeRefusal, OtherDevicesAreReported) {
     back_.deviceName = "another device";
-    const std::vector<std::filesystem::path> shards{writeShard(folder_ / "a", back_), writeShard(folder_ / "b", front_)};
+    const std::vector<std::filesystem::path> shards{writeShard(folder_ / "a", back_),
+                                                    writeShard(folder_ / "b", front_)};
     DiagnosticList diagnostics;
     ASSERT_TRUE(mergeProbeFields(shards, folder_ / "whole", {}, Limits{}, diagnostics));
     ASSERT_EQ(diagnostics.entries().size(), 1u);

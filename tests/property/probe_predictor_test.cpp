@@ -19,8 +19,9 @@ TEST(ProbePredictor, IsLosslessForAnyWords) {
                 std::vector<std::byte> words(std::size_t{edge} * edge * probe::wordBytesOf(layer));
                 // All bits, few bits, and jumps between the ends of the range.
                 for (std::byte& b : words)
-                    b = round % 3 == 0 ? static_cast<std::byte>(random())
-                                       : static_cast<std::byte>(round % 3 == 1 ? random() % 2 : 0xffu * (random() % 2));
+                    b = round % 3 == 0
+                            ? static_cast<std::byte>(random())
+                            : static_cast<std::byte>(round % 3 == 1 ? random() % 2 : 0xffu * (random() % 2));
                 const auto planes = probe::toPlanes(layer, words, edge);
                 ASSERT_EQ(planes.size(), probe::planeBytes(layer, edge));
                 std::vector<std::byte> back(words.size());
@@ -37,7 +38,8 @@ TEST(ProbePredictor, PlanesOfDepthLeaveNothing) {
     for (int y = 0; y < 4; ++y)
         for (int x = 0; x < 4; ++x) codes.push_back(static_cast<std::uint16_t>(1000 + 3 * x - 7 * y));
     const auto planes = probe::toPlanes(ProbeLayer::MinDepth, std::as_bytes(std::span(codes)), 4);
-    const std::vector<int> low{0xd0, 6, 6, 6, 13, 0, 0, 0, 13, 0, 0, 0, 13, 0, 0, 0};  // 2000 = 0x7d0; 3 -> 6; -7 -> 13
+    const std::vector<int> low{0xd0, 6, 6, 6, 13, 0, 0, 0,
+                               13,   0, 0, 0, 13, 0, 0, 0};  // 2000 = 0x7d0; 3 -> 6; -7 -> 13
     for (std::size_t i = 0; i < 16; ++i) {
         EXPECT_EQ(std::to_integer<int>(planes[i]), low[i]) << i;
         EXPECT_EQ(std::to_integer<int>(planes[16 + i]), i == 0 ? 7 : 0) << i;

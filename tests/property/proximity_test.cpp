@@ -1,4 +1,5 @@
-// The proximity grid: what it takes for seen against rays, and what it chooses against a search over all pairs.
+// The proximity grid: what it takes for seen against rays, and what it chooses against a search over all
+// pairs.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -25,18 +26,23 @@ struct Scene {
     ProximityGrid shape;
 
     Scene(std::uint32_t edge, glm::uvec3 counts, glm::uvec3 cells, std::uint32_t seed = 1) : room(24, seed) {
-        info.grid = {.start = room.size() / (2.0f * glm::vec3{counts}), .step = room.size() / glm::vec3{counts}, .counts = counts};
+        info.grid = {.start = room.size() / (2.0f * glm::vec3{counts}),
+                     .step = room.size() / glm::vec3{counts},
+                     .counts = counts};
         info.resolution.depth = edge;
         info.depth = depthEncodingFor(glm::vec3{0}, room.size());
         records.resize(info.grid.probeCount());
         for (std::uint32_t i = 0; i < records.size(); ++i)
             if (room.isSolid(info.grid.pointOf(i))) records[i].state = ProbeState::Inactive;
         // Half a millimetre of room around the walls, so that rounding leaves no sample outside.
-        shape = {.start = glm::vec3{-5e-4f}, .step = (room.size() + 1e-3f) / glm::vec3{cells}, .counts = cells, .probes = {}};
+        shape = {.start = glm::vec3{-5e-4f},
+                 .step = (room.size() + 1e-3f) / glm::vec3{cells},
+                 .counts = cells,
+                 .probes = {}};
         addSamples(seed);
     }
 
-    /// Centres of random voxel faces that are not inside something: what a scene of voxels gives.
+    /// Centers of random voxel faces that are not inside something: what a scene of voxels gives.
     void addSamples(std::uint32_t seed) {
         std::mt19937 random(seed);
         std::uniform_real_distribution<float> uniform;
@@ -46,7 +52,8 @@ struct Scene {
             const bool isRoom = b + 1 == solids.size();
             for (int n = 0; n < (isRoom ? 6000 : 400); ++n) {
                 const glm::vec3 extent = solids[b].max - solids[b].min;
-                glm::vec3 p = solids[b].min + extent * glm::vec3{uniform(random), uniform(random), uniform(random)};
+                glm::vec3 p =
+                    solids[b].min + extent * glm::vec3{uniform(random), uniform(random), uniform(random)};
                 p = (glm::floor(p / BoxRoom::kVoxelMetres) + 0.5f) * BoxRoom::kVoxelMetres;
                 const int axis = n % 3;
                 const bool isUpper = n / 3 % 2 == 0;
@@ -59,7 +66,8 @@ struct Scene {
     }
 
     std::vector<std::uint32_t> mapOf(std::uint32_t probe) const {
-        return test::traceDepthNormal(room, info.grid.pointOf(probe), info.resolution.depth, DepthCoder(info.depth));
+        return test::traceDepthNormal(room, info.grid.pointOf(probe), info.resolution.depth,
+                                      DepthCoder(info.depth));
     }
 
     bool trulySees(std::uint32_t probe, const SurfaceSample& sample) const {
@@ -72,7 +80,9 @@ struct Scene {
     ProximityInput input(const CellSurfaces& surfaces) const {
         return {.info = info,
                 .records = records,
-                .depthNormal = [this](std::uint32_t probe) -> Result<std::vector<std::uint32_t>> { return mapOf(probe); },
+                .depthNormal = [this](std::uint32_t probe) -> Result<std::vector<std::uint32_t>> {
+                    return mapOf(probe);
+                },
                 .shape = shape,
                 .surfaces = surfaces};
     }
@@ -118,17 +128,18 @@ struct Judgement {
     static double share(std::uint64_t part, std::uint64_t all) {
         return static_cast<double>(part) / static_cast<double>(all);
     }
-    double lostShare() const { return share(lost, visible); }
-    double lostShareNotGrazing() const { return share(lostNotGrazing, visibleNotGrazing); }
-    double wrongShare() const { return share(wrong, pairs); }
+    double lostFraction() const { return share(lost, visible); }
+    double lostFractionNotGrazing() const { return share(lostNotGrazing, visibleNotGrazing); }
+    double wrongFraction() const { return share(wrong, pairs); }
     void print(const char* points) const {
-        std::cout << "  " << points << ": lost " << 100 * lostShare() << " %, above 6 degrees "
-                  << 100 * lostShareNotGrazing() << " %, wrong " << 100 * wrongShare() << " %\n";
+        std::cout << "  " << points << ": lost " << 100 * lostFraction() << " %, above 6 degrees "
+                  << 100 * lostFractionNotGrazing() << " %, wrong " << 100 * wrongFraction() << " %\n";
     }
 };
 
-/// The gates of the design hold for points where rays end. Of voxel faces by area more is lost at less than six degrees, where
-/// a texel spans a quarter of a metre and more: boxes of whole voxels end within a voxel of the probes' own height.
+/// The gates of the design hold for points where rays end. Of voxel faces by area more is lost at less than
+/// six degrees, where a texel spans a quarter of a metre and more: boxes of whole voxels end within a voxel
+/// of the probes' own height.
 TEST(Proximity, MapsTellWhatAProbeSees) {
     const Scene scene(1024, {4, 2, 4}, {1, 1, 1});
     const DepthCoder coder(scene.info.depth);
@@ -141,7 +152,8 @@ TEST(Proximity, MapsTellWhatAProbeSees) {
         const auto judge = [&](const SurfaceSample& sample, Judgement& judgement) {
             const glm::vec3 toPoint = sample.position - scene.info.grid.pointOf(probe);
             const bool isGrazing = -glm::dot(toPoint, sample.normal) < 0.1f * glm::length(toPoint);
-            judgement.add(scene.trulySees(probe, sample), mapSeesSurface(words, toPoint, sample.normal, 1024, coder), isGrazing);
+            judgement.add(scene.trulySees(probe, sample),
+                          mapSeesSurface(words, toPoint, sample.normal, 1024, coder), isGrazing);
         };
         for (const SurfaceSample& sample : ends) judge(sample, ofEnds);
         for (std::size_t i = 0; i < scene.samples.size(); i += 2) judge(scene.samples[i], ofFaces);
@@ -149,17 +161,18 @@ TEST(Proximity, MapsTellWhatAProbeSees) {
     ofEnds.print("where rays end");
     ofFaces.print("voxel faces by area");
     ASSERT_GT(ofEnds.visible, 50000u);
-    EXPECT_LE(ofEnds.lostShare(), 0.005);
-    EXPECT_LE(ofEnds.wrongShare(), 0.001);
+    EXPECT_LE(ofEnds.lostFraction(), 0.005);
+    EXPECT_LE(ofEnds.wrongFraction(), 0.001);
     ASSERT_GT(ofFaces.visibleNotGrazing, 50000u);
-    EXPECT_LE(ofFaces.lostShareNotGrazing(), 0.005);
-    EXPECT_LE(ofFaces.lostShare(), 0.012);
-    EXPECT_LE(ofFaces.wrongShare(), 0.001);
+    EXPECT_LE(ofFaces.lostFractionNotGrazing(), 0.005);
+    EXPECT_LE(ofFaces.lostFraction(), 0.012);
+    EXPECT_LE(ofFaces.wrongFraction(), 0.001);
 }
 
-/// The rule of mapSeesSurface, by the directions of texels: a neighbour is what lies a texel further on the octahedron's net.
-bool texelsAroundSee(const std::vector<std::uint32_t>& words, const SurfaceSample& sample, glm::vec3 eye, std::uint32_t edge,
-                     const DepthCoder& coder) {
+/// The rule of mapSeesSurface, by the directions of texels: a neighbor is what lies a texel further on the
+/// octahedron's net.
+bool texelsAroundSee(const std::vector<std::uint32_t>& words, const SurfaceSample& sample, glm::vec3 eye,
+                     std::uint32_t edge, const DepthCoder& coder) {
     const glm::vec3 to = sample.position - eye;
     const glm::vec2 at = (octEncode(to) * 0.5f + 0.5f) * static_cast<float>(edge) - 0.5f;
     const glm::vec2 low = glm::floor(at);
@@ -186,8 +199,9 @@ ProximityGrid bruteForce(const Scene& scene, const CellSurfaces& surfaces) {
     for (std::uint32_t p = 0; p < scene.records.size(); ++p) maps.push_back(scene.mapOf(p));
     for (std::size_t slot = 0; slot < surfaces.cells.size(); ++slot) {
         const std::uint32_t cell = surfaces.cells[slot];
-        const glm::vec3 low = grid.start + grid.step * glm::vec3{cell % grid.counts.x, cell / grid.counts.x % grid.counts.y,
-                                                                cell / grid.counts.x / grid.counts.y};
+        const glm::vec3 low =
+            grid.start + grid.step * glm::vec3{cell % grid.counts.x, cell / grid.counts.x % grid.counts.y,
+                                               cell / grid.counts.x / grid.counts.y};
         const std::size_t first = surfaces.firstOfCell[slot];
         const std::size_t count = surfaces.firstOfCell[slot + 1] - first;
         const std::size_t kept = std::min<std::size_t>(count, 56);
@@ -195,8 +209,10 @@ ProximityGrid bruteForce(const Scene& scene, const CellSurfaces& surfaces) {
         std::map<std::uint32_t, float> texels;
         for (std::uint32_t p = 0; p < scene.records.size(); ++p) {
             const glm::vec3 eye = scene.info.grid.pointOf(p);
-            const glm::vec3 centre = low + 0.5f * grid.step;
-            if (!scene.records[p].isActive() || glm::distance(eye, centre) > 2 * glm::length(scene.info.grid.step)) continue;
+            const glm::vec3 center = low + 0.5f * grid.step;
+            if (!scene.records[p].isActive() ||
+                glm::distance(eye, center) > 2 * glm::length(scene.info.grid.step))
+                continue;
             std::vector<bool> bits;
             float sum = 0;
             int surfacesSeen = 0;
@@ -214,7 +230,8 @@ ProximityGrid bruteForce(const Scene& scene, const CellSurfaces& surfaces) {
             for (int c = 0; c < 8; ++c) {
                 const glm::vec3 corner = low + grid.step * glm::vec3{c & 1, c >> 1 & 1, c >> 2};
                 const std::uint32_t code = depthCodeOf(maps[p][texelIndex(corner - eye, edge)]);
-                bits.push_back(code == kDepthMissCode || coder.decode(code) + 0.01f >= glm::distance(corner, eye));
+                bits.push_back(code == kDepthMissCode ||
+                               coder.decode(code) + 0.01f >= glm::distance(corner, eye));
             }
             seen[p] = bits;
             texels[p] = sum / static_cast<float>(surfacesSeen);
@@ -226,7 +243,8 @@ ProximityGrid bruteForce(const Scene& scene, const CellSurfaces& surfaces) {
             for (const auto& [p, bits] : seen) {
                 int fresh = 0;
                 for (std::size_t i = 0; i < bits.size(); ++i) fresh += bits[i] && !covered[i] ? 1 : 0;
-                const std::pair<float, float> score{static_cast<float>(fresh) * std::sqrt(texels[p]), texels[p]};
+                const std::pair<float, float> score{static_cast<float>(fresh) * std::sqrt(texels[p]),
+                                                    texels[p]};
                 if (score > bestScore) {
                     bestScore = score;
                     best = p;
@@ -313,7 +331,9 @@ TEST(Proximity, FailuresAreReported) {
     const Scene scene(16, {2, 1, 2}, {4, 2, 4});
     const CellSurfaces surfaces = sortIntoCells(scene.samples, scene.shape);
     ProximityInput input = scene.input(surfaces);
-    input.depthNormal = [](std::uint32_t) -> Result<std::vector<std::uint32_t>> { return std::vector<std::uint32_t>(7); };
+    input.depthNormal = [](std::uint32_t) -> Result<std::vector<std::uint32_t>> {
+        return std::vector<std::uint32_t>(7);
+    };
     EXPECT_EQ(buildProximityGrid(input).error().code, ErrorCode::BadStructure);
     input.depthNormal = [](std::uint32_t) -> Result<std::vector<std::uint32_t>> {
         return fail(ErrorCode::ChecksumMismatch, "damaged");
@@ -324,7 +344,11 @@ TEST(Proximity, FailuresAreReported) {
     EXPECT_EQ(buildProximityGrid(fewer).error().code, ErrorCode::BadStructure);
     ProbeFieldInfo compact = scene.info;
     compact.resolution.depth = 0;
-    const ProximityInput flat{.info = compact, .records = scene.records, .depthNormal = {}, .shape = scene.shape, .surfaces = surfaces};
+    const ProximityInput flat{.info = compact,
+                              .records = scene.records,
+                              .depthNormal = {},
+                              .shape = scene.shape,
+                              .surfaces = surfaces};
     EXPECT_EQ(buildProximityGrid(flat).error().code, ErrorCode::BadStructure);
 }
 

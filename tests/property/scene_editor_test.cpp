@@ -1,5 +1,5 @@
-// Any sequence of edits, then everything undone: the bytes of the scene as it was; then everything redone: the bytes as
-// they were at the end. Saving under other names in between changes paths, not that.
+// Any sequence of edits, then everything undone: the bytes of the scene as it was; then everything redone:
+// the bytes as they were at the end. Saving under other names in between changes paths, not that.
 #include "compose/scene_editor.hpp"
 
 #include <gtest/gtest.h>
@@ -22,17 +22,27 @@ class RandomEdits {
         const std::string gesture = gestures[random_.integer(0, 3)];
         const auto index = static_cast<std::size_t>(random_.integer(0, 6));
         switch (random_.integer(0, 10)) {
-            case 0: return done(editor_.addModel(model()));
-            case 1: return done(editor_.duplicateModel(index, vector()));
-            case 2: return done(editor_.removeModel(index));
+            case 0:
+                return done(editor_.addModel(model()));
+            case 1:
+                return done(editor_.duplicateModel(index, vector()));
+            case 2:
+                return done(editor_.removeModel(index));
             case 3:
             case 4:
-            case 5: return change(index, gesture);
-            case 6: return done(editor_.setSun({.direction = vector(), .irradiance = light()}, gesture));
-            case 7: return done(editor_.setSky({.zenith = light(), .horizon = light(), .ground = light()}, gesture));
-            case 8: return done(editor_.setProbes(probes(), gesture));
-            case 9: return done(editor_.setCameras({{.name = "c", .position = vector()}}, gesture));
-            default: editor_.endGesture();
+            case 5:
+                return change(index, gesture);
+            case 6:
+                return done(editor_.setSun({.direction = vector(), .irradiance = light()}, gesture));
+            case 7:
+                return done(
+                    editor_.setSky({.zenith = light(), .horizon = light(), .ground = light()}, gesture));
+            case 8:
+                return done(editor_.setProbes(probes(), gesture));
+            case 9:
+                return done(editor_.setCameras({{.name = "c", .position = vector()}}, gesture));
+            default:
+                editor_.endGesture();
         }
     }
     int accepted() const { return accepted_; }
@@ -51,18 +61,28 @@ class RandomEdits {
         ProbeGridRequest request;
         if (random_.integer(0, 1) == 0) request.position = vector();
         if (random_.integer(0, 1) == 0) request.stepMetres = glm::dvec3(number());
-        if (random_.integer(0, 1) == 0) request.count = glm::uvec3(static_cast<std::uint32_t>(random_.integer(0, 9)));
+        if (random_.integer(0, 1) == 0)
+            request.count = glm::uvec3(static_cast<std::uint32_t>(random_.integer(0, 9)));
         return request;
     }
     void change(std::size_t index, const std::string& gesture) {
         if (index >= editor_.scene().models.size()) return done(editor_.setModel(index, model()));
         SceneModel changed = editor_.scene().models[index];
         switch (random_.integer(0, 4)) {
-            case 0: changed.translateMetres = vector(); break;
-            case 1: changed.rotateRadians = vector(); break;
-            case 2: changed.cubeEdgeMetres = vector(); break;
-            case 3: changed.metresPerVoxel = number(); break;
-            default: changed.visible = !changed.visible;
+            case 0:
+                changed.translateMetres = vector();
+                break;
+            case 1:
+                changed.rotateRadians = vector();
+                break;
+            case 2:
+                changed.cubeEdgeMetres = vector();
+                break;
+            case 3:
+                changed.metresPerVoxel = number();
+                break;
+            default:
+                changed.visible = !changed.visible;
         }
         done(editor_.setModel(index, changed, gesture));
     }
@@ -75,7 +95,8 @@ class RandomEdits {
 
 Scene startScene() {
     Scene scene;
-    for (const char* path : {"hall.pf_vox", "door.pf_vox", "hall.pf_vox"}) scene.models.push_back({.path = path});
+    for (const char* path : {"hall.pf_vox", "door.pf_vox", "hall.pf_vox"})
+        scene.models.push_back({.path = path});
     scene.probes.stepMetres = glm::dvec3(1.5);
     return scene;
 }

@@ -1,5 +1,5 @@
-// A round trip through OpenVDB: octrees -> .vdb -> import -> octrees gives the same PF_VOX file, byte by byte; and OpenVDB
-// itself sees what we say is in the file.
+// A round trip through OpenVDB: octrees -> .vdb -> import -> octrees gives the same PF_VOX file, byte by
+// byte; and OpenVDB itself sees what we say is in the file.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <openvdb/io/File.h>
@@ -33,7 +33,9 @@ Bytes exported(const OctreeAsset& asset) {
     return bytes.value_or(Bytes{});
 }
 
-Bytes pfVoxOf(const OctreeAsset& asset) { return encodePfVox(asset, {}).value(); }
+Bytes pfVoxOf(const OctreeAsset& asset) {
+    return encodePfVox(asset, {}).value();
+}
 
 /// Models in the order in which instances show them, which is the order that a .vdb keeps.
 void sortModels(OctreeAsset& asset) {
@@ -63,7 +65,8 @@ void expectRoundTrip(OctreeAsset asset) {
         EXPECT_EQ(again.instances[i].layer >= 0, asset.instances[i].layer >= 0);
         again.instances[i].layer = asset.instances[i].layer;
         // Zero may have another sign.
-        EXPECT_EQ(glm::mat4x3(again.instances[i].worldFromModel), glm::mat4x3(asset.instances[i].worldFromModel));
+        EXPECT_EQ(glm::mat4x3(again.instances[i].worldFromModel),
+                  glm::mat4x3(asset.instances[i].worldFromModel));
         again.instances[i].worldFromModel = asset.instances[i].worldFromModel;
     }
     const OctreeAsset octrees = built(std::move(again));
@@ -125,7 +128,8 @@ TEST_P(VdbExportCorpus, ComesBackAsItWas) {
     ASSERT_TRUE(imported) << describe(imported.error());
     OctreeAsset asset = built(*std::move(imported));
     // Instances of models without voxels and models that nothing shows are not in a .vdb file.
-    const bool allShown = std::ranges::all_of(asset.models, [](const OctreeModel& m) { return m.voxelCount > 0; });
+    const bool allShown =
+        std::ranges::all_of(asset.models, [](const OctreeModel& m) { return m.voxelCount > 0; });
     if (!allShown) GTEST_SKIP() << "has an empty model";
     expectRoundTrip(std::move(asset));
 }
@@ -168,7 +172,7 @@ TEST(VdbExport, OpenVdbSeesWhatIsThere) {
         EXPECT_EQ(grid->activeVoxelCount(), kVoxels) << grid->getName();
         EXPECT_EQ(grid->constBaseTree().activeTileCount(), 2u) << grid->getName();
         EXPECT_EQ(grid->constBaseTree().leafCount(), 2u) << grid->getName();
-        // The centre of voxel (0, 0, 0), whose edge is an eighth of a metre.
+        // The center of voxel (0, 0, 0), whose edge is an eighth of a metre.
         EXPECT_EQ(grid->indexToWorld(openvdb::Coord(0, 0, 0)), openvdb::Vec3d(0.0625));
         EXPECT_EQ(grid->voxelSize(), openvdb::Vec3d(0.125));
     }
@@ -190,9 +194,11 @@ TEST(VdbExport, OpenVdbSeesWhatIsThere) {
 
 TEST(VdbExport, OpenVdbsOwnToolListsTheGrids) {
     const std::string tool = PFVOX_VDB_PRINT;
-    if (tool.empty() || !std::filesystem::exists(tool)) GTEST_SKIP() << "vdb_print is not installed (libopenvdb-tools)";
+    if (tool.empty() || !std::filesystem::exists(tool))
+        GTEST_SKIP() << "vdb_print is not installed (libopenvdb-tools)";
     TempFolder folder;
-    ASSERT_TRUE(pfvox::io::writeFileAtomically(folder / "thing.vdb", exported(oneModel(boxModel({0, 0, 0}, {9, 2, 3}, 1)))));
+    ASSERT_TRUE(pfvox::io::writeFileAtomically(folder / "thing.vdb",
+                                               exported(oneModel(boxModel({0, 0, 0}, {9, 2, 3}, 1)))));
     const ProcessResult result = runProcess({tool, "-l", (folder / "thing.vdb").string()});
     EXPECT_EQ(result.exitCode, 0) << result.err;
     EXPECT_THAT(result.out, testing::AllOf(testing::HasSubstr("density"), testing::HasSubstr("Cd"),
@@ -200,7 +206,7 @@ TEST(VdbExport, OpenVdbsOwnToolListsTheGrids) {
         << result.out;
 }
 
-TEST(VdbExport, DensityAndColoursAloneAreTheModelToo) {
+TEST(VdbExport, DensityAndColorsAloneAreTheModelToo) {
     const OctreeAsset asset = oneModel(patchyModel(5, 40));
     ImportSettings settings;
     settings.vdb.grids = {"density"};
@@ -236,7 +242,8 @@ TEST(VdbExport, EqualAssetsGiveEqualBytes) {
     const Bytes bytes = exported(asset);
     EXPECT_TRUE(bytes == exported(asset));
     const std::string uuid(reinterpret_cast<const char*>(bytes.data()) + 21, 36);
-    EXPECT_THAT(uuid, testing::ContainsRegex("^[0-9a-f]{8}-[0-9a-f]{4}-8[0-9a-f]{3}-[89ab][0-9a-f]{3}-[0-9a-f]{12}$"));
+    EXPECT_THAT(uuid, testing::ContainsRegex(
+                          "^[0-9a-f]{8}-[0-9a-f]{4}-8[0-9a-f]{3}-[89ab][0-9a-f]{3}-[0-9a-f]{12}$"));
     const Bytes other = exported(oneModel(patchyModel(4, 60)));
     EXPECT_NE(uuid, std::string(reinterpret_cast<const char*>(other.data()) + 21, 36));
 }
@@ -247,8 +254,8 @@ TEST(VdbExport, LargeSolidsStayTiles) {
     for (int z = -kRadius; z < kRadius; z += 8)
         for (int y = -kRadius; y < kRadius; y += 8)
             for (int x = -kRadius; x < kRadius; x += 8) {
-                const glm::ivec3 centre = glm::ivec3{x, y, z} + 4;
-                if (centre.x * centre.x + centre.y * centre.y + centre.z * centre.z < kRadius * kRadius)
+                const glm::ivec3 center = glm::ivec3{x, y, z} + 4;
+                if (center.x * center.x + center.y * center.y + center.z * center.z < kRadius * kRadius)
                     ball.fillTile({x, y, z}, 3, 1);
             }
     ball.fillTile({4096, 0, 0}, 12, 2);

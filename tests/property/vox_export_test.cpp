@@ -1,5 +1,5 @@
-// A round trip through our own file and back: source -> PF_VOX -> .vox shows the same world, cell by cell, with the same
-// colours and material types.
+// A round trip through our own file and back: source -> PF_VOX -> .vox shows the same world, cell by cell,
+// with the same colors and material types.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -51,16 +51,19 @@ void expectRoundTrip(const std::filesystem::path& source) {
 
 class VoxExportRoundTrip : public testing::TestWithParam<std::filesystem::path> {};
 
-TEST_P(VoxExportRoundTrip, ShowsTheSameWorld) { expectRoundTrip(GetParam()); }
+TEST_P(VoxExportRoundTrip, ShowsTheSameWorld) {
+    expectRoundTrip(GetParam());
+}
 
 INSTANTIATE_TEST_SUITE_P(Corpus, VoxExportRoundTrip, testing::ValuesIn(test::convertibleVoxFiles()));
-INSTANTIATE_TEST_SUITE_P(OwnData, VoxExportRoundTrip, testing::ValuesIn([] {
-                             std::vector<std::filesystem::path> files;
-                             for (const char* name : {"courtyard.vox", "tree.vox", "lamp.vox", "statue.vox"}) {
-                                 files.push_back(std::filesystem::path(PFVOX_DATA_DIR) / name);
-                             }
-                             return files;
-                         }()));
+INSTANTIATE_TEST_SUITE_P(
+    OwnData, VoxExportRoundTrip, testing::ValuesIn([] {
+        std::vector<std::filesystem::path> files;
+        for (const char* name : {"courtyard.vox", "tree.vox", "lamp.vox", "statue.vox"}) {
+            files.push_back(std::filesystem::path(PFVOX_DATA_DIR) / name);
+        }
+        return files;
+    }()));
 GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(VoxExportRoundTrip);
 
 OctreeAsset oneModel(VoxelModel model) {
@@ -112,7 +115,8 @@ TEST(VoxExport, MaterialsComeBack) {
     VoxelModel model;
     for (int i = 0; i < 4; ++i) model.set({i, 0, 0}, static_cast<MaterialIndex>(i));
     const OctreeAsset asset = oneModel(std::move(model));
-    const auto back = importBytes(exportVox(asset, diagnostics).value(), "back.vox", {}, Limits{}, diagnostics);
+    const auto back =
+        importBytes(exportVox(asset, diagnostics).value(), "back.vox", {}, Limits{}, diagnostics);
     ASSERT_TRUE(back) << describe(back.error());
     EXPECT_NEAR(back->materials[1].metalness, 0.75f, 1e-4f);
     EXPECT_NEAR(back->materials[1].roughness, 0.25f, 1e-4f);

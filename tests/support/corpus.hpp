@@ -22,7 +22,8 @@ inline std::vector<std::filesystem::path> corpusFiles(const std::string& part, c
     return files;
 }
 
-/// The .vox files of the corpus without those that the importer refuses (vox_corpus_test.cpp checks that it does).
+/// The .vox files of the corpus without those that the importer refuses (vox_corpus_test.cpp checks that it
+/// does).
 inline std::vector<std::filesystem::path> convertibleVoxFiles() {
     std::vector<std::filesystem::path> files = corpusFiles("vox", ".vox");
     std::erase_if(files, [](const std::filesystem::path& file) {

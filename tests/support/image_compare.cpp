@@ -64,10 +64,11 @@ ImageDifference differenceOf(const viewer::Picture& actual, const viewer::Pictur
                << file << " has another size" << keep(actual, name + ".actual.png");
     }
     const ImageDifference difference = differenceOf(actual, *golden, tolerance.channel);
-    const double share = static_cast<double>(difference.pixels) / static_cast<double>(actual.pixels.size());
-    if (share <= tolerance.pixelShare) return ::testing::AssertionSuccess();
+    const double fraction =
+        static_cast<double>(difference.pixels) / static_cast<double>(actual.pixels.size());
+    if (fraction <= tolerance.pixelFraction) return ::testing::AssertionSuccess();
     return ::testing::AssertionFailure()
-           << difference.pixels << " pixels (" << 100.0 * share << " %) differ from " << file
+           << difference.pixels << " pixels (" << 100.0 * fraction << " %) differ from " << file
            << " by more than " << tolerance.channel << "/255, at most by " << difference.largest
            << keep(actual, name + ".actual.png") << keep(difference.picture, name + ".difference.png");
 }

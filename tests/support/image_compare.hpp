@@ -14,8 +14,8 @@ namespace pfvox::test {
 /// Devices round differently, and a hit at an edge may fall to either side: single pixels may differ, areas
 /// may not.
 struct ImageTolerance {
-    std::uint32_t channel = 8;  ///< a pixel differs when a channel does by more than this, of 255
-    double pixelShare = 0.005;  ///< share of the pixels that may differ
+    std::uint32_t channel = 8;     ///< a pixel differs when a channel does by more than this, of 255
+    double pixelFraction = 0.005;  ///< fraction of the pixels that may differ
 };
 
 struct ImageDifference {

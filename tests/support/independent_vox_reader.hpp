@@ -18,7 +18,7 @@ namespace pfvox::test {
 
 using Cell = std::array<int, 3>;
 
-/// Colour and material type of a voxel, as one value that can be compared and counted.
+/// Color and material type of a voxel, as one value that can be compared and counted.
 struct VoxelLook {
     std::array<int, 4> rgba{};
     std::string type;
@@ -100,12 +100,12 @@ class IndependentVoxReader {
     VoxelLook look(int index) const {
         const auto type = types_.find(index);
         VoxelLook result{{}, type == types_.end() ? "_diffuse" : type->second};
-        result.rgba = hasPalette_ ? palette_.at(index) : defaultColour(index);
+        result.rgba = hasPalette_ ? palette_.at(index) : defaultColor(index);
         return result;
     }
 
     /// Written out from the sentence that describes it, to compare the importer's rule with.
-    static std::array<int, 4> defaultColour(int index) {
+    static std::array<int, 4> defaultColor(int index) {
         static const int levels[6] = {0xff, 0xcc, 0x99, 0x66, 0x33, 0x00};
         static const int ramp[10] = {0xee, 0xdd, 0xbb, 0xaa, 0x88, 0x77, 0x55, 0x44, 0x22, 0x11};
         const int n = index - 1;

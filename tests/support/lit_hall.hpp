@@ -1,5 +1,5 @@
-// A hall for pictures of light: two rooms with a doorway between them, one under an open roof, one with a lamp, a metal
-// ball, a pane of glass and a clear-coated block; and a coarse probe field of it, as a file.
+// A hall for pictures of light: two rooms with a doorway between them, one under an open roof, one with a
+// lamp, a metal ball, a pane of glass and a clear-coated block; and a coarse probe field of it, as a file.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -33,11 +33,13 @@ inline VoxelAsset litHall() {
             return glm::all(glm::greaterThanEqual(p, low)) && glm::all(glm::lessThan(p, high));
         };
         if (p.y < 2) return 0;
-        if (p.y >= 22) return within({6, 22, 6}, {22, 24, 22}) ? std::nullopt : std::optional<MaterialIndex>(0);
+        if (p.y >= 22)
+            return within({6, 22, 6}, {22, 24, 22}) ? std::nullopt : std::optional<MaterialIndex>(0);
         if (p.x < 2) return 1;
         if (p.x >= 54) return 2;
         if (p.z < 2) return 0;
-        if (p.x >= 27 && p.x < 29) return within({27, 2, 8}, {29, 14, 20}) ? std::nullopt : std::optional<MaterialIndex>(0);
+        if (p.x >= 27 && p.x < 29)
+            return within({27, 2, 8}, {29, 14, 20}) ? std::nullopt : std::optional<MaterialIndex>(0);
         const glm::dvec3 fromBall = glm::dvec3(p) + 0.5 - glm::dvec3(14.0, 7.0, 9.0);
         if (glm::dot(fromBall, fromBall) < 25.0) return 4;
         if (within({40, 18, 10}, {46, 20, 16})) return 3;
@@ -91,8 +93,8 @@ inline BakeSettings quickBake() {
     return settings;
 }
 
-/// The hall's field, kept beside the golden pictures that show it, so that they do not change with the baker. With
-/// PFVOX_UPDATE_GOLDEN set it is baked anew.
+/// The hall's field, kept beside the golden pictures that show it, so that they do not change with the baker.
+/// With PFVOX_UPDATE_GOLDEN set it is baked anew.
 inline std::filesystem::path litHallProbes(gpu::Device& device, const LoadedScene& scene) {
     const std::filesystem::path file = std::filesystem::path(PFVOX_TESTS_DIR) / "image/golden/hall.pf_probe";
     if (std::getenv("PFVOX_UPDATE_GOLDEN") == nullptr) return file;

@@ -1,4 +1,5 @@
-// Surgery on PF_VOX bytes: change anything and repair the hashes, so that a test reaches the check behind them.
+// Surgery on PF_VOX bytes: change anything and repair the hashes, so that a test reaches the check behind
+// them.
 #pragma once
 
 #include <zstd.h>
@@ -59,7 +60,8 @@ inline OpenFile openFile(const Bytes& file) {
     return open;
 }
 
-/// Closes the file again, all sections raw, sizes and hashes right; counts and everything else as they were left.
+/// Closes the file again, all sections raw, sizes and hashes right; counts and everything else as they were
+/// left.
 inline Bytes closeFile(OpenFile open) {
     open.header.sectionCount = static_cast<std::uint32_t>(open.parts.size());
     const std::size_t headBytes = sizeof open.header + open.parts.size() * sizeof(layout::Section);

@@ -1,4 +1,5 @@
-// Small probe fields with something of every kind in them; nothing in them depends on floating point of a library.
+// Small probe fields with something of every kind in them; nothing in them depends on floating point of a
+// library.
 #pragma once
 
 #include <pfvox/pf_probe.hpp>
@@ -21,14 +22,17 @@ inline std::uint32_t mix(std::uint32_t a, std::uint32_t b = 0) {
 inline void mirrorBorder(std::vector<std::uint32_t>& words, std::uint32_t interior) {
     const std::uint32_t edge = interior + 2;
     for (std::uint32_t i = 0; i < edge * edge; ++i) {
-        const glm::ivec2 source =
-            borderSource({static_cast<int>(i % edge), static_cast<int>(i / edge)}, static_cast<int>(interior));
-        words[i] = words[static_cast<std::size_t>(source.x + 1) + edge * static_cast<std::size_t>(source.y + 1)];
+        const glm::ivec2 source = borderSource({static_cast<int>(i % edge), static_cast<int>(i / edge)},
+                                               static_cast<int>(interior));
+        words[i] =
+            words[static_cast<std::size_t>(source.x + 1) + edge * static_cast<std::size_t>(source.y + 1)];
     }
 }
 
 /// Words without NaN and infinity.
-inline std::uint32_t lightWord(std::uint32_t seed) { return mix(seed) & 0x7be1efbfu & ~0x80000000u; }
+inline std::uint32_t lightWord(std::uint32_t seed) {
+    return mix(seed) & 0x7be1efbfu & ~0x80000000u;
+}
 
 inline ProbeFieldInfo probeInfo(glm::uvec3 counts = {3, 2, 2}, ProbeResolution resolution = {32, 16, 4, 6}) {
     ProbeFieldInfo info{.grid = {.start = {-1, 0.5f, 2}, .step = {1, 2, 0.5f}, .counts = counts},
@@ -37,7 +41,7 @@ inline ProbeFieldInfo probeInfo(glm::uvec3 counts = {3, 2, 2}, ProbeResolution r
                         .depth = {.scale = 8, .farMetres = 125},
                         .lightContent = kLightOfSky | kLightOfEmitters | kLightOfBouncedSun,
                         .settings = {.seed = 77,
-                                     .tracedEdge = 32,
+                                     .tracedResolution = 32,
                                      .minSamples = 32,
                                      .maxSamples = 4096,
                                      .maxBounces = 16,
@@ -69,7 +73,7 @@ inline ProbeData probeOf(const ProbeFieldInfo& info, std::uint32_t index, std::u
         data.record.offset = {0.25f, -0.125f, 0};
     }
     data.record.error = 0.0625f;
-    data.record.cappedTileShare = 0.5f;
+    data.record.noisyTileFraction = 0.5f;
     const ProbeResolution& r = info.resolution;
     const std::uint32_t key = mix(index, seed);
     data.depthNormal.resize(std::size_t{r.depth} * r.depth);
@@ -95,7 +99,8 @@ inline ProbeData probeOf(const ProbeFieldInfo& info, std::uint32_t index, std::u
 }
 
 inline ProximityGrid proximityOf(const ProbeFieldInfo& info, glm::uvec3 counts = {3, 2, 4}) {
-    ProximityGrid grid{.start = {-1.5f, 0, 1.75f}, .step = {0.5f, 0.5f, 0.25f}, .counts = counts, .probes = {}};
+    ProximityGrid grid{
+        .start = {-1.5f, 0, 1.75f}, .step = {0.5f, 0.5f, 0.25f}, .counts = counts, .probes = {}};
     const auto count = static_cast<std::uint32_t>(info.grid.probeCount());
     for (std::uint32_t cell = 0; cell < grid.cellCount(); ++cell) {
         std::vector<std::uint32_t> list;

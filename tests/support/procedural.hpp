@@ -32,7 +32,7 @@ void fillBox(VoxelModel& model, const VoxelBox& box,
 /// Builds the octrees; fails the running test on an error.
 OctreeAsset build(const VoxelAsset& asset);
 
-/// A room with coloured walls, a sphere, a lamp and steps: 64 x 40 x 64 voxels of 0.1 m, the front open.
+/// A room with colored walls, a sphere, a lamp and steps: 64 x 40 x 64 voxels of 0.1 m, the front open.
 VoxelAsset demoRoom();
 
 /// Random voxels of `materials` materials in a cube of the given edge, every `1 / density`-th set.

@@ -50,7 +50,8 @@ class Tracer {
     glm::dvec3 sunOverPi(const glm::dvec3& position, const glm::dvec3& normal) const {
         const glm::dvec3 toSun = -glm::normalize(scene_.scene.sun.direction);
         const double cosine = glm::dot(normal, toSun);
-        if (cosine <= 0.0 || caster_.cast({.origin = position + 1e-6 * normal, .direction = toSun})) return glm::dvec3(0.0);
+        if (cosine <= 0.0 || caster_.cast({.origin = position + 1e-6 * normal, .direction = toSun}))
+            return glm::dvec3(0.0);
         return scene_.scene.sun.irradiance * cosine / std::numbers::pi;
     }
 
@@ -62,8 +63,8 @@ class Tracer {
 
 }  // namespace
 
-ReferenceLight referenceLight(const LoadedScene& scene, const glm::dvec3& position, const glm::dvec3& normal, int paths,
-                              int bounces) {
+ReferenceLight referenceLight(const LoadedScene& scene, const glm::dvec3& position, const glm::dvec3& normal,
+                              int paths, int bounces) {
     Tracer tracer(scene);
     ReferenceLight result;
     double squares = 0.0;

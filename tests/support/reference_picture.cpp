@@ -14,7 +14,9 @@ namespace pfvox::test {
 namespace {
 
 std::uint32_t packed(glm::dvec3 c) {
-    const auto byte = [](double v) { return static_cast<std::uint32_t>(std::lround(255.0 * std::clamp(v, 0.0, 1.0))); };
+    const auto byte = [](double v) {
+        return static_cast<std::uint32_t>(std::lround(255.0 * std::clamp(v, 0.0, 1.0)));
+    };
     return byte(c.x) | byte(c.y) << 8 | byte(c.z) << 16 | 0xff000000u;
 }
 
@@ -94,13 +96,14 @@ viewer::Picture referencePicture(const OctreeAsset& asset, const viewer::ViewCam
             const double v = 1.0 - (2.0 * y + 1.0) / settings.height;
             const glm::dvec3 direction = frame.forward + u * tanX * frame.right + v * tanY * frame.up;
             const auto hit = caster.cast({.origin = camera.position, .direction = direction});
-            if (hit) picture.pixels[std::size_t{y} * settings.width + x] = pixelOf(asset, *hit, settings.mode);
+            if (hit)
+                picture.pixels[std::size_t{y} * settings.width + x] = pixelOf(asset, *hit, settings.mode);
         }
     });
     return picture;
 }
 
-double differingShare(const viewer::Picture& picture, const viewer::Picture& reference) {
+double differingFraction(const viewer::Picture& picture, const viewer::Picture& reference) {
     std::size_t hits = 0;
     std::size_t differing = 0;
     for (std::size_t i = 0; i < reference.pixels.size(); ++i) {

@@ -12,8 +12,8 @@ namespace pfvox::test {
 viewer::Picture referencePicture(const OctreeAsset& asset, const viewer::ViewCamera& camera,
                                  const viewer::PictureSettings& settings);
 
-/// Share of the pixels that the reference hits and that differ by more than 2 of 255 in some channel.
-double differingShare(const viewer::Picture& picture, const viewer::Picture& reference);
+/// Fraction of the pixels that the reference hits and that differ by more than 2 of 255 in some channel.
+double differingFraction(const viewer::Picture& picture, const viewer::Picture& reference);
 
 /// The pixel that shows a linear color.
 std::uint32_t displayed(const glm::dvec3& linear);

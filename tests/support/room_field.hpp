@@ -1,4 +1,5 @@
-// RoomField: the probes of the box room with light that is a known function of the place, uploaded to the test device.
+// RoomField: the probes of the box room with light that is a known function of the place, uploaded to the
+// test device.
 #pragma once
 
 #include <oneapi/tbb/parallel_for.h>
@@ -48,9 +49,9 @@ inline ProbeRecord placeProbe(const BoxRoom& room, const ProbeGrid& grid, std::u
         best = glm::length(offset);
         record.offset = offset;
     }
-    record.state = best == 0.0f                                        ? ProbeState::Active
+    record.state = best == 0.0f                                     ? ProbeState::Active
                    : best == std::numeric_limits<float>::infinity() ? ProbeState::Inactive
-                                                                       : ProbeState::Relocated;
+                                                                    : ProbeState::Relocated;
     return record;
 }
 
@@ -80,7 +81,8 @@ inline ProbeData traceRoomProbe(const BoxRoom& room, const ProbeFieldInfo& info,
     if (resolution.irradiance != 0)
         data.irradiance = irradianceLayer({.edge = edge, .texels = light}, resolution.irradiance);
     if (resolution.moments != 0)
-        data.moments = momentsLayer({.edge = edge, .texels = distances}, info.grid.momentRange(), resolution.moments);
+        data.moments =
+            momentsLayer({.edge = edge, .texels = distances}, info.grid.momentRange(), resolution.moments);
     return data;
 }
 
@@ -121,19 +123,22 @@ inline void addProximity(ProbeField& field, const BoxRoom& room, const Proximity
     const CellSurfaces surfaces = sortIntoCells(roomSurface(room, 200000, 5), shape);
     std::vector<ProbeRecord> records;
     for (const ProbeData& probe : field.probes) records.push_back(probe.record);
-    auto built = buildProximityGrid(
-        {.info = field.info,
-         .records = records,
-         .depthNormal = [&](std::uint32_t i) -> Result<std::vector<std::uint32_t>> { return field.probes[i].depthNormal; },
-         .shape = shape,
-         .surfaces = surfaces});
+    auto built =
+        buildProximityGrid({.info = field.info,
+                            .records = records,
+                            .depthNormal = [&](std::uint32_t i) -> Result<std::vector<std::uint32_t>> {
+                                return field.probes[i].depthNormal;
+                            },
+                            .shape = shape,
+                            .surfaces = surfaces});
     ASSERT_TRUE(built) << describe(built.error());
     field.proximity = std::move(built->grid);
 }
 
 inline void addProximity(ProbeField& field, const BoxRoom& room, glm::uvec3 cells) {
     const glm::vec3 step = (room.size() + 1e-3f) / glm::vec3{cells};
-    addProximity(field, room, ProximityGrid{.start = glm::vec3{-5e-4f}, .step = step, .counts = cells, .probes = {}});
+    addProximity(field, room,
+                 ProximityGrid{.start = glm::vec3{-5e-4f}, .step = step, .counts = cells, .probes = {}});
 }
 
 inline Result<gpu::GpuProbes> uploadField(gpu::Device& device, const ProbeField& field,

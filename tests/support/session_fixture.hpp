@@ -25,7 +25,8 @@ class SessionFixture : public PictureTest {
         VoxelAsset asset;
         asset.materials = {material(red, 20, 20)};
         VoxelModel model;
-        fillBox(model, {.min = {0, 0, 0}, .max = glm::ivec3(edge)}, [](glm::ivec3) { return MaterialIndex{0}; });
+        fillBox(model, {.min = {0, 0, 0}, .max = glm::ivec3(edge)},
+                [](glm::ivec3) { return MaterialIndex{0}; });
         asset.models.push_back(std::move(model));
         asset.instances.push_back({.model = 0, .worldFromModel = Affine{0.1}, .name = "box"});
         asset.source.voxelSizeMetres = 0.1;

@@ -133,13 +133,13 @@ class SvxWriter {
     std::string afterChannels;
     bool interlaced = false;
 
-    /// Grey slices below `folder`.
+    /// Gray slices below `folder`.
     void addScalarChannel(const std::string& attributes, const std::string& folder, int bitDepth,
                           const Sample& sample) {
         addChannel(attributes, folder, static_cast<std::uint8_t>(bitDepth), SPNG_COLOR_TYPE_GRAYSCALE,
                    [&](glm::ivec3 v, std::vector<std::uint16_t>& out) { out.push_back(sample(v)); });
     }
-    /// Truecolour slices below `folder`.
+    /// Truecolor slices below `folder`.
     void addColorChannel(const std::string& attributes, const std::string& folder,
                          const std::function<glm::u8vec3(glm::ivec3)>& color) {
         addChannel(attributes, folder, 8, SPNG_COLOR_TYPE_TRUECOLOR,

@@ -1,4 +1,5 @@
-// VirtualScreen: an X server without a screen (Xvfb), real key and mouse events (xdotool), and what the screen shows.
+// VirtualScreen: an X server without a screen (Xvfb), real key and mouse events (xdotool), and what the
+// screen shows.
 #pragma once
 
 #include <chrono>
@@ -69,7 +70,9 @@ class VirtualScreen {
         for (std::uint32_t y = 0; y < picture.height; ++y) {
             for (std::uint32_t x = 0; x < picture.width; ++x) {
                 const std::size_t at = begin + y * rowBytes + std::size_t{4} * x;  // B, G, R, -
-                const auto channel = [&](std::size_t i) { return std::uint32_t{static_cast<std::uint8_t>(file.at(at + i))}; };
+                const auto channel = [&](std::size_t i) {
+                    return std::uint32_t{static_cast<std::uint8_t>(file.at(at + i))};
+                };
                 picture.pixels.push_back(channel(2) | channel(1) << 8 | channel(0) << 16 | 0xff000000u);
             }
         }

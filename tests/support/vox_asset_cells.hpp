@@ -37,7 +37,7 @@ inline VoxelLook lookOf(const Material& m) {
             std::string("_") + toString(m.type)};
 }
 
-/// The world cells of one instance in pfvox axes, found from the centres of its voxels; sorted.
+/// The world cells of one instance in pfvox axes, found from the centers of its voxels; sorted.
 inline std::vector<std::pair<Cell, VoxelLook>> worldCellsOf(const VoxelAsset& asset,
                                                             const Instance& instance) {
     std::vector<VoxelLook> looks;

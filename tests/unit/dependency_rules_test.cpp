@@ -18,8 +18,8 @@ const fs::path kRoot = fs::path(PFVOX_TESTS_DIR).parent_path();
 struct Rule {
     const char* name;
     const char* folder;
-    const char* forbidden;                 ///< regular expression, matched line by line
-    std::vector<std::string> exceptions;   ///< files, relative to the root
+    const char* forbidden;                ///< regular expression, matched line by line
+    std::vector<std::string> exceptions;  ///< files, relative to the root
 };
 
 std::vector<std::string> violations(const Rule& rule) {
@@ -36,14 +36,16 @@ std::vector<std::string> violations(const Rule& rule) {
         int number = 0;
         for (std::string line; std::getline(in, line);) {
             ++number;
-            if (std::regex_search(line, forbidden)) found.push_back(name + ":" + std::to_string(number) + ": " + line);
+            if (std::regex_search(line, forbidden))
+                found.push_back(name + ":" + std::to_string(number) + ": " + line);
         }
     }
     return found;
 }
 
 TEST(DependencyRules, Hold) {
-    const char* const kTalk = R"(std::(cout|cerr)|[^\w](printf|fprintf|puts)\(|fmt::print|[^\w_]exit\(|getenv)";
+    const char* const kTalk =
+        R"(std::(cout|cerr)|[^\w](printf|fprintf|puts)\(|fmt::print|[^\w_]exit\(|getenv)";
     const char* const kOpen = R"([^\w](fopen|open)\(.*(O_RDONLY|O_WRONLY|"[rw]b?")|std::(i|o)?fstream)";
     std::vector<Rule> rules{
         {"libformat neither prints, exits nor reads the environment",
@@ -79,9 +81,15 @@ TEST(DependencyRules, Hold) {
           "libformat/src/import/vdb/vdb_import.cpp", "libformat/src/import/vdb/vdb_reader.cpp",
           "libformat/src/import/vdb/vdb_reader.hpp"}},
         {"public headers of libbake are free of Vulkan", "libbake/include", R"(#include <vulkan)", {}},
-        {"pairs of flags are declared by addSwitch()", "tools", R"(!--no-)", {"tools/common/command_line.cpp"}},
+        {"pairs of flags are declared by addSwitch()",
+         "tools",
+         R"(!--no-)",
+         {"tools/common/command_line.cpp"}},
         {"pairs of flags are declared by addSwitch()", "viewer", R"(!--no-)", {}},
-        {"the viewer consumes only what was built", "viewer", R"(#include <pfvox/(import|convert|export)\.hpp>)", {}},
+        {"the viewer consumes only what was built",
+         "viewer",
+         R"(#include <pfvox/(import|convert|export)\.hpp>)",
+         {}},
     };
     const char* const kSrgb = R"(1\.055|12\.92|pow\(.*[^\d.]2\.2\b)";
     for (const char* folder :
@@ -95,10 +103,12 @@ TEST(DependencyRules, Hold) {
 
 TEST(DependencyRules, NoFileIsTooLongToBeOneRoom) {
     constexpr int kMaxLines = 600;
-    for (const char* folder : {"libformat", "libbake", "tools", "viewer", "shaders", "tests", "bench", "data"}) {
+    for (const char* folder :
+         {"libformat", "libbake", "tools", "viewer", "shaders", "tests", "bench", "data"}) {
         for (const auto& entry : fs::recursive_directory_iterator(kRoot / folder)) {
             const std::string extension = entry.path().extension().string();
-            if (extension != ".cpp" && extension != ".hpp" && extension != ".glsl" && extension != ".comp") continue;
+            if (extension != ".cpp" && extension != ".hpp" && extension != ".glsl" && extension != ".comp")
+                continue;
             std::ifstream in(entry.path());
             int lines = 0;
             for (std::string line; std::getline(in, line);) ++lines;

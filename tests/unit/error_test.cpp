@@ -24,7 +24,8 @@ TEST(Error, IsDescribedWithFilePlaceAndMessage) {
 
 TEST(Error, EveryCodeHasASpellingOfItsOwn) {
     std::set<std::string_view> seen;
-    for (const int code : {100, 101, 102, 200, 201, 202, 203, 204, 205, 206, 300, 301, 302, 400, 500, 501, 502, 600, 900}) {
+    for (const int code :
+         {100, 101, 102, 200, 201, 202, 203, 204, 205, 206, 300, 301, 302, 400, 500, 501, 502, 600, 900}) {
         const std::string_view text = toString(static_cast<ErrorCode>(code));
         EXPECT_NE(text, "unknown") << code;
         EXPECT_TRUE(seen.insert(text).second) << text;

@@ -26,21 +26,24 @@ namespace fs = std::filesystem;
 class Files : public testing::Test {
   protected:
     void SetUp() override {
-        folder_ = fs::path(testing::TempDir()) /
-                  ("pfvox-files-" + std::to_string(::getpid()) + "-" +
-                   testing::UnitTest::GetInstance()->current_test_info()->name());
+        folder_ =
+            fs::path(testing::TempDir()) / ("pfvox-files-" + std::to_string(::getpid()) + "-" +
+                                            testing::UnitTest::GetInstance()->current_test_info()->name());
         fs::remove_all(folder_);
         fs::create_directories(folder_);
     }
     void TearDown() override { fs::remove_all(folder_); }
 
-    static std::span<const std::byte> bytesOf(std::string_view text) { return std::as_bytes(std::span(text)); }
+    static std::span<const std::byte> bytesOf(std::string_view text) {
+        return std::as_bytes(std::span(text));
+    }
     static std::string contentOf(const fs::path& file) {
         std::ifstream in(file, std::ios::binary);
         return {std::istreambuf_iterator<char>(in), {}};
     }
     std::size_t filesInFolder() const {
-        return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder_), fs::directory_iterator{}));
+        return static_cast<std::size_t>(
+            std::distance(fs::directory_iterator(folder_), fs::directory_iterator{}));
     }
 
     std::vector<std::string> namesInFolder() const {
@@ -80,7 +83,8 @@ TEST_F(Files, WhatIsWrittenIsRead) {
     ASSERT_TRUE(writeFileAtomically(file, bytesOf("second, longer")));
     const auto read = readFile(file, 1000);
     ASSERT_TRUE(read);
-    EXPECT_EQ(std::string(reinterpret_cast<const char*>(read->bytes().data()), read->bytes().size()), "second, longer");
+    EXPECT_EQ(std::string(reinterpret_cast<const char*>(read->bytes().data()), read->bytes().size()),
+              "second, longer");
     EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / "a b"), fs::directory_iterator{}), 1);
 }
 
@@ -163,7 +167,8 @@ TEST_F(Files, FailedWriteLeavesTheOldFileAndNothingElse) {
     EXPECT_EQ(contentOf(folder_ / "plain"), "old");
 
     fs::create_directory(folder_ / "folder");
-    EXPECT_EQ(writeFileAtomically(folder_ / "folder", bytesOf("new")).error().code, ErrorCode::FileNotWritable);
+    EXPECT_EQ(writeFileAtomically(folder_ / "folder", bytesOf("new")).error().code,
+              ErrorCode::FileNotWritable);
     EXPECT_EQ(filesInFolder(), 2u);
 }
 

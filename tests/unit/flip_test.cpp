@@ -12,7 +12,9 @@ constexpr std::uint32_t kEdge = 24;
 
 using Image = std::vector<glm::vec3>;
 
-Image uniform(glm::vec3 colour) { return Image(kEdge * kEdge, colour); }
+Image uniform(glm::vec3 color) {
+    return Image(kEdge * kEdge, color);
+}
 
 std::vector<float> flip(const Image& a, const Image& b) {
     return flipOf({.width = kEdge, .height = kEdge, .reference = a, .test = b});
@@ -28,13 +30,13 @@ TEST(Flip, EqualPicturesDoNotDiffer) {
     for (const float value : flip(image, image)) EXPECT_EQ(value, 0.0f);
 }
 
-/// Green and blue are the two colours that the scale ends at.
+/// Green and blue are the two colors that the scale ends at.
 TEST(Flip, GreenAndBlueDifferMost) {
     EXPECT_NEAR(meanOf(flip(uniform({0, 1, 0}), uniform({0, 0, 1}))), 1.0, 1e-5);
 }
 
-/// Lightness 100 apart and no colour: from the definition 0.95 + 0.05 (100^0.7 - 0.4 m) / (0.6 m), where m = d^0.7 and
-/// d = 203.2 is the distance of green and blue.
+/// Lightness 100 apart and no color: from the definition 0.95 + 0.05 (100^0.7 - 0.4 m) / (0.6 m), where m =
+/// d^0.7 and d = 203.2 is the distance of green and blue.
 TEST(Flip, BlackAndWhite) {
     const double black = meanOf(flip(uniform({0, 0, 0}), uniform({1, 1, 1})));
     EXPECT_NEAR(black, 0.967, 0.002);
@@ -42,10 +44,10 @@ TEST(Flip, BlackAndWhite) {
 }
 
 TEST(Flip, MoreDifferenceIsMore) {
-    const Image grey = uniform({0.2f, 0.2f, 0.2f});
+    const Image gray = uniform({0.2f, 0.2f, 0.2f});
     double before = 0.0;
     for (const float step : {0.01f, 0.03f, 0.1f, 0.3f}) {
-        const double now = meanOf(flip(grey, uniform(glm::vec3{0.2f + step})));
+        const double now = meanOf(flip(gray, uniform(glm::vec3{0.2f + step})));
         EXPECT_GT(now, before);
         before = now;
     }
@@ -60,10 +62,13 @@ TEST(Flip, WhatIsTooFineIsNotSeen) {
             image.push_back(glm::vec3{(i % kEdge / cell + i / kEdge / cell) % 2 == 0 ? 0.45f : 0.55f});
         return image;
     };
-    const Image grey = uniform(glm::vec3{0.5f});
+    const Image gray = uniform(glm::vec3{0.5f});
     const auto difference = [&](std::uint32_t cell, double pixelsPerDegree) {
         const Image image = board(cell);
-        return meanOf(flipOf({.width = kEdge, .height = kEdge, .reference = grey, .test = image,
+        return meanOf(flipOf({.width = kEdge,
+                              .height = kEdge,
+                              .reference = gray,
+                              .test = image,
                               .pixelsPerDegree = pixelsPerDegree}));
     };
     EXPECT_LT(difference(1, 120.0), 0.5 * difference(6, 20.0));
@@ -71,10 +76,10 @@ TEST(Flip, WhatIsTooFineIsNotSeen) {
 
 /// A new edge or point stands out more than the same change spread over a plane.
 TEST(Flip, NewFeaturesStandOut) {
-    const Image grey = uniform(glm::vec3{0.5f});
-    Image point = grey;
+    const Image gray = uniform(glm::vec3{0.5f});
+    Image point = gray;
     point[kEdge * kEdge / 2 + kEdge / 2] = glm::vec3{1.0f};
-    const std::vector<float> values = flip(grey, point);
+    const std::vector<float> values = flip(gray, point);
     EXPECT_GT(*std::max_element(values.begin(), values.end()), 0.2f);
     EXPECT_LT(values[0], 0.01f);
 }

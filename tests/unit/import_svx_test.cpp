@@ -59,7 +59,7 @@ TEST(ImportSvx, ReadsEveryBitDepthInterlacedOrNot) {
     }
 }
 
-TEST(ImportSvx, TakesFirstComponentOfEveryColourType) {
+TEST(ImportSvx, TakesFirstComponentOfEveryColorType) {
     const auto value = [](glm::ivec3 v) { return asymmetric(v) ? std::uint16_t{200} : std::uint16_t{0}; };
     for (const std::uint8_t type :
          {SPNG_COLOR_TYPE_TRUECOLOR, SPNG_COLOR_TYPE_TRUECOLOR_ALPHA, SPNG_COLOR_TYPE_GRAYSCALE_ALPHA}) {
@@ -108,7 +108,7 @@ TEST(ImportSvx, HalfOfTheMaximumIs128Of255) {
     EXPECT_EQ(importAs(file, "a.svx").result.value().models[0].voxelCount(), 4u * 20);
 }
 
-TEST(ImportSvx, KeepsColours) {
+TEST(ImportSvx, KeepsColors) {
     const auto color = [](glm::ivec3 v) { return glm::u8vec3{40 * v.x, 60 * v.y, 80 * v.z}; };
     for (const char* type : {"COLOR-RGB", "COLOR", "DENSITY_COLOR"}) {
         SCOPED_TRACE(type);
@@ -128,7 +128,7 @@ TEST(ImportSvx, KeepsColours) {
     }
 }
 
-/// The colours of the test above in three channels; `bits` of a sample.
+/// The colors of the test above in three channels; `bits` of a sample.
 void addPrimaries(SvxWriter& writer, std::uint8_t bits, const std::vector<std::string>& types) {
     for (const std::string& type : types) {
         const int axis = type == "RED" ? 0 : type == "GREEN" ? 1 : 2;
@@ -139,7 +139,7 @@ void addPrimaries(SvxWriter& writer, std::uint8_t bits, const std::vector<std::s
     }
 }
 
-TEST(ImportSvx, ColoursComeFromRedGreenAndBlue) {
+TEST(ImportSvx, ColorsComeFromRedGreenAndBlue) {
     for (const std::uint8_t bits : {std::uint8_t{8}, std::uint8_t{16}}) {
         SCOPED_TRACE(int{bits});
         SvxWriter writer(kGrid);
@@ -152,13 +152,14 @@ TEST(ImportSvx, ColoursComeFromRedGreenAndBlue) {
         EXPECT_EQ(voxelSet(asset.models[0]), asymmetricVoxels());
         for (const auto& [x, y, z] : asymmetricVoxels()) {
             const auto material = asset.models[0].at({x, y, z});
-            EXPECT_EQ(asset.materials[material.value()].baseColor, (glm::u8vec4{40 * x, 60 * y, 80 * z, 255}));
+            EXPECT_EQ(asset.materials[material.value()].baseColor,
+                      (glm::u8vec4{40 * x, 60 * y, 80 * z, 255}));
         }
         EXPECT_FALSE(imported.reported("svx-channel-skipped"));
     }
 }
 
-TEST(ImportSvx, MaterialFractionsSayWhereColoursAre) {
+TEST(ImportSvx, MaterialFractionsSayWhereColorsAre) {
     for (const bool primaries : {true, false}) {
         SvxWriter writer(kGrid);
         writer.addScalarChannel("type=\"MATERIAL\" id=\"1\"", "m1", 8,
@@ -166,7 +167,9 @@ TEST(ImportSvx, MaterialFractionsSayWhereColoursAre) {
         if (primaries) {
             addPrimaries(writer, 8, {"RED", "GREEN", "BLUE"});
         } else {
-            writer.addColorChannel("type=\"COLOR-RGB\"", "color", [](glm::ivec3) { return glm::u8vec3{1, 2, 3}; });
+            writer.addColorChannel("type=\"COLOR-RGB\"", "color", [](glm::ivec3) {
+                return glm::u8vec3{1, 2, 3};
+            });
         }
         const Imported imported = importAs(writer.finish(), "a.svx");
         ASSERT_TRUE(imported.result) << imported.errorText();
@@ -175,7 +178,7 @@ TEST(ImportSvx, MaterialFractionsSayWhereColoursAre) {
     }
 }
 
-TEST(ImportSvx, SomePrimariesAreNoColour) {
+TEST(ImportSvx, SomePrimariesAreNoColor) {
     SvxWriter writer(kGrid);
     writer.addScalarChannel("type=\"DENSITY\"", "density", 8, [](glm::ivec3) { return 255; });
     addPrimaries(writer, 8, {"RED", "BLUE"});
@@ -200,7 +203,7 @@ TEST(ImportSvx, AlphaIsTheDensityOfDensityColor) {
     EXPECT_EQ(imported.result->materials.at(0).baseColor, (glm::u8vec4{10, 20, 30, 255}));
 }
 
-TEST(ImportSvx, ColoursWithoutDensityAreRefused) {
+TEST(ImportSvx, ColorsWithoutDensityAreRefused) {
     SvxWriter writer(kGrid);
     writer.addColorChannel("type=\"COLOR-RGB\"", "color", [](glm::ivec3) { return glm::u8vec3{1, 2, 3}; });
     EXPECT_EQ(importAs(writer.finish(), "a.svx").result.error().code, ErrorCode::UnsupportedFeature);

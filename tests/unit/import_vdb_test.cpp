@@ -102,7 +102,7 @@ TEST(ImportVdb, VoxelsKeepTheirPlacesInBricks) {
     EXPECT_EQ(voxelSet(turned.result->models[0]), expected);
 }
 
-TEST(ImportVdb, TransformsPlaceVoxelCentres) {
+TEST(ImportVdb, TransformsPlaceVoxelCenters) {
     auto grid = fogGrid("a", {Coord(0, 0, 0)});
     auto transform = openvdb::math::Transform::createLinearTransform(0.25);
     transform->postTranslate(openvdb::Vec3d(1.0, 2.0, 3.0));
@@ -114,11 +114,11 @@ TEST(ImportVdb, TransformsPlaceVoxelCentres) {
         ASSERT_TRUE(imported.result) << imported.errorText();
         EXPECT_DOUBLE_EQ(imported.result->source.voxelSizeMetres, 0.25);
         const Affine& world = imported.result->instances[0].worldFromModel;
-        // The centre of index voxel (4, 8, 12) lies at (2, 4, 6) in the file's world.
+        // The center of index voxel (4, 8, 12) lies at (2, 4, 6) in the file's world.
         const glm::dvec3 voxel = up == UpAxis::Y ? glm::dvec3{4, 8, 12} : glm::dvec3{4, 12, -9};
-        const glm::dvec3 centre = world * glm::dvec4{voxel + 0.5, 1.0};
+        const glm::dvec3 center = world * glm::dvec4{voxel + 0.5, 1.0};
         const glm::dvec3 expected = up == UpAxis::Y ? glm::dvec3{2, 4, 6} : glm::dvec3{2, 6, -4};
-        EXPECT_LT(glm::distance(centre, expected), 1e-12);
+        EXPECT_LT(glm::distance(center, expected), 1e-12);
         EXPECT_GT(glm::determinant(glm::dmat3{world}), 0.0) << "a mirror";
     }
     ImportSettings settings;
@@ -182,7 +182,7 @@ TEST(ImportVdb, DoublesAndHalvesAreRead) {
     EXPECT_EQ(imported.result->models[1].voxelCount(), 2u);
 }
 
-TEST(ImportVdb, ColoursComeFromCd) {
+TEST(ImportVdb, ColorsComeFromCd) {
     auto density = fogGrid("density", {Coord(0, 0, 0), Coord(1, 0, 0), Coord(2, 0, 0), Coord(3, 0, 0)});
     density->tree().addTile(2, Coord(128, 0, 0), 1.0f, true);
     auto cd = openvdb::Vec3SGrid::create(openvdb::Vec3s(0.0f));
@@ -195,7 +195,7 @@ TEST(ImportVdb, ColoursComeFromCd) {
     const Imported imported = importGrids({density, cd});
     ASSERT_TRUE(imported.result) << imported.errorText();
     const VoxelAsset& asset = *imported.result;
-    ASSERT_EQ(asset.models.size(), 1u) << "the colour grid itself is no model beside a density";
+    ASSERT_EQ(asset.models.size(), 1u) << "the color grid itself is no model beside a density";
     const auto clamped = std::ranges::find(imported.diagnostics, "vdb-colors-clamped", &Diagnostic::id);
     ASSERT_NE(clamped, imported.diagnostics.end());
     EXPECT_THAT(clamped->message, testing::StartsWith("2 values of grid \"Cd\""));
@@ -211,8 +211,7 @@ TEST(ImportVdb, ColoursComeFromCd) {
     EXPECT_EQ(colorAt({255, 127, 127}), (glm::ivec3{0, 255, 0}));
     EXPECT_EQ(colorAt({130, 5, 6}), (glm::ivec3{0, 0, 255}));
     EXPECT_EQ(colorAt({130, 5, 7}), (glm::ivec3{0, 255, 0}));
-    EXPECT_LT(asset.models[0].memoryBytes(), 1u << 20)
-        << "only the brick with two colours may be taken apart";
+    EXPECT_LT(asset.models[0].memoryBytes(), 1u << 20) << "only the brick with two colors may be taken apart";
 }
 
 TEST(ImportVdb, GradientsAreQuantisedDeterministically) {
@@ -238,7 +237,7 @@ TEST(ImportVdb, GradientsAreQuantisedDeterministically) {
     EXPECT_GT(int{corner.b}, 235);
 }
 
-TEST(ImportVdb, OtherTransformsOfColoursAreReported) {
+TEST(ImportVdb, OtherTransformsOfColorsAreReported) {
     auto density = fogGrid("density", {Coord(0, 0, 0)});
     auto cd = openvdb::Vec3SGrid::create(openvdb::Vec3s(1.0f));
     cd->setName("Cd");
@@ -249,7 +248,8 @@ TEST(ImportVdb, OtherTransformsOfColoursAreReported) {
     EXPECT_TRUE(imported.reported("vdb-color-transform"));
 }
 
-/// Red, green and blue as Blender's smoke has them: (1, 0, 0.5) at x = 0, green alone at x = 1, a blue tile at 128.
+/// Red, green and blue as Blender's smoke has them: (1, 0, 0.5) at x = 0, green alone at x = 1, a blue tile
+/// at 128.
 openvdb::GridPtrVec channelGrids(const std::array<std::string, 3>& names) {
     const auto red = fogGrid(names[0], {Coord(0, 0, 0)});
     const auto green = fogGrid(names[1], {Coord(1, 0, 0)});
@@ -259,7 +259,7 @@ openvdb::GridPtrVec channelGrids(const std::array<std::string, 3>& names) {
     return {red, green, blue};
 }
 
-TEST(ImportVdb, ColoursComeFromThreeFloatGrids) {
+TEST(ImportVdb, ColorsComeFromThreeFloatGrids) {
     using Names = std::array<std::string, 3>;
     for (const Names& names : {Names{"color_r", "color_g", "color_b"}, Names{"Cd.x", "Cd.y", "Cd.z"}}) {
         SCOPED_TRACE(names[0]);
@@ -270,7 +270,7 @@ TEST(ImportVdb, ColoursComeFromThreeFloatGrids) {
         const Imported imported = importGrids(grids);
         ASSERT_TRUE(imported.result) << imported.errorText();
         const VoxelAsset& asset = *imported.result;
-        ASSERT_EQ(asset.models.size(), 1u) << "the colour grids are no models beside a density";
+        ASSERT_EQ(asset.models.size(), 1u) << "the color grids are no models beside a density";
         EXPECT_EQ(asset.models[0].voxelCount(), 3u + (1u << 21));
         const auto colorAt = [&](glm::ivec3 v) {
             return glm::ivec3{asset.materials.at(*asset.models[0].at(v)).baseColor};
@@ -287,11 +287,12 @@ TEST(ImportVdb, ThreeFloatGridsAloneStayModels) {
     const Imported imported = importGrids(channelGrids({"color_r", "color_g", "color_b"}));
     ASSERT_TRUE(imported.result) << imported.errorText();
     EXPECT_EQ(imported.result->models.size(), 3u);
-    const Imported two = importGrids({fogGrid("color_r", {Coord(0, 0, 0)}), fogGrid("color_g", {Coord(0, 0, 0)})});
-    EXPECT_EQ(two.result->models.size(), 2u) << "two are no colours";
+    const Imported two =
+        importGrids({fogGrid("color_r", {Coord(0, 0, 0)}), fogGrid("color_g", {Coord(0, 0, 0)})});
+    EXPECT_EQ(two.result->models.size(), 2u) << "two are no colors";
 }
 
-TEST(ImportVdb, ColourChannelsOfDifferentTransformsAreReported) {
+TEST(ImportVdb, ColorChannelsOfDifferentTransformsAreReported) {
     openvdb::GridPtrVec grids = channelGrids({"color_r", "color_g", "color_b"});
     grids[1]->setTransform(openvdb::math::Transform::createLinearTransform(0.5));
     grids.push_back(fogGrid("density", {Coord(0, 0, 0)}));
@@ -301,7 +302,7 @@ TEST(ImportVdb, ColourChannelsOfDifferentTransformsAreReported) {
     EXPECT_EQ(imported.result->materials.size(), 1u);
 }
 
-TEST(ImportVdb, EmptyColourGridsColourNothing) {
+TEST(ImportVdb, EmptyColorGridsColorNothing) {
     const Imported imported = importGrids({fogGrid("density", {Coord(0, 0, 0)}), fogGrid("color_r", {}),
                                            fogGrid("color_g", {}), fogGrid("color_b", {})});
     ASSERT_TRUE(imported.result) << imported.errorText();
@@ -414,7 +415,7 @@ TEST(ImportVdb, FrustumsAreRefusedWithTheRemedy) {
     EXPECT_TRUE(beside.reported("vdb-grid-skipped"));
 }
 
-TEST(ImportVdb, VectorsThatAreNoColoursAreRefused) {
+TEST(ImportVdb, VectorsThatAreNoColorsAreRefused) {
     openvdb::initialize();
     auto velocity = openvdb::Vec3SGrid::create();
     velocity->setName("vel");
@@ -483,7 +484,7 @@ TEST(ImportVdb, CorpusFilesHaveTheVoxelsThatOpenVdbSees) {
     EXPECT_GT(compared, 0);
 }
 
-TEST(ImportVdb, CorpusColourGridsAloneAreModels) {
+TEST(ImportVdb, CorpusColorGridsAloneAreModels) {
     PFVOX_NEEDS_CORPUS("vdb/sphereCd.vdb");
     const auto root = std::filesystem::path(PFVOX_CORPUS_DIR) / "vdb";
     const Imported sphere = importAs(readBytes(root / "sphereCd.vdb"), "sphereCd.vdb");

@@ -24,7 +24,7 @@ std::vector<T> mapOf(std::uint32_t edge, F&& f) {
     return texels;
 }
 
-/// Light in a room: walls of different colours, boxes, one of them a lamp.
+/// Light in a room: walls of different colors, boxes, one of them a lamp.
 std::vector<glm::vec3> roomRadiance(const BoxRoom& room, glm::vec3 probe, std::uint32_t edge) {
     return mapOf<glm::vec3>(edge, [&](glm::vec3 d) {
         const test::RoomHit hit = room.trace(probe, d);
@@ -59,7 +59,8 @@ void expectBorder(const std::vector<std::uint32_t>& words, int interior) {
     for (int y = 0; y < edge; ++y)
         for (int x = 0; x < edge; ++x) {
             const glm::ivec2 source = borderSource({x, y}, interior) + 1;
-            ASSERT_EQ(words[static_cast<std::size_t>(x + edge * y)], words[static_cast<std::size_t>(source.x + edge * source.y)]);
+            ASSERT_EQ(words[static_cast<std::size_t>(x + edge * y)],
+                      words[static_cast<std::size_t>(source.x + edge * source.y)]);
         }
 }
 
@@ -101,7 +102,8 @@ TEST(IrradianceLayer, QuadratureOverBlocksIsThatOverTexels) {
     const auto words = irradianceLayer({edge, texels}, 24);
     double squared = 0;
     for (const glm::vec3 n : randomNormals(60)) {
-        const glm::dvec3 relative = glm::dvec3(lookupIrradiance(words, 24, n)) / exactIrradiance(texels, edge, n) - 1.0;
+        const glm::dvec3 relative =
+            glm::dvec3(lookupIrradiance(words, 24, n)) / exactIrradiance(texels, edge, n) - 1.0;
         squared += glm::dot(relative, relative) / 3;
         ASSERT_LT(glm::length(relative), 0.03);  // packing alone: 0.8, 0.8 and 1.6 %
     }
@@ -123,8 +125,10 @@ TEST(IrradianceLayer, FitIsNearerThanSamples) {
         for (int y = 0; y < 10; ++y)
             for (int x = 0; x < 10; ++x) {
                 const glm::ivec2 s = borderSource({x, y}, 8);
-                const glm::vec3 n = directionOfTexel(static_cast<std::uint32_t>(s.x), static_cast<std::uint32_t>(s.y), 8);
-                samples[static_cast<std::size_t>(x + 10 * y)] = packLight(glm::vec3(exactIrradiance(texels, edge, n)));
+                const glm::vec3 n =
+                    directionOfTexel(static_cast<std::uint32_t>(s.x), static_cast<std::uint32_t>(s.y), 8);
+                samples[static_cast<std::size_t>(x + 10 * y)] =
+                    packLight(glm::vec3(exactIrradiance(texels, edge, n)));
             }
         for (const glm::vec3 n : randomNormals(300)) {
             const glm::dvec3 exact = exactIrradiance(texels, edge, n);
@@ -148,9 +152,8 @@ TEST(IrradianceLayer, FitIsNearerThanSamples) {
 /// One small bright lamp: unclamped least squares would swing below 0 beside it.
 TEST(IrradianceLayer, IsNeverNegativeBesideALamp) {
     const std::uint32_t edge = 64;
-    const auto lamp = mapOf<glm::vec3>(edge, [](glm::vec3 d) {
-        return d.x > 0.99f ? glm::vec3{1000} : glm::vec3{0};
-    });
+    const auto lamp =
+        mapOf<glm::vec3>(edge, [](glm::vec3 d) { return d.x > 0.99f ? glm::vec3{1000} : glm::vec3{0}; });
     const auto words = irradianceLayer({edge, lamp}, 8);
     bool hasZero = false;
     for (const std::uint32_t word : words) {
@@ -172,13 +175,16 @@ TEST(MomentsLayer, ConstantDistance) {
 TEST(MomentsLayer, MissesAndFarSurfacesAreOne) {
     std::vector<float> far(32 * 32, std::numeric_limits<float>::infinity());
     far[5] = 1e30f;
-    for (const std::uint32_t word : momentsLayer({32, far}, 6.0f, 14)) ASSERT_EQ(unpackMoments(word), glm::vec2(1, 1));
+    for (const std::uint32_t word : momentsLayer({32, far}, 6.0f, 14))
+        ASSERT_EQ(unpackMoments(word), glm::vec2(1, 1));
 }
 
 TEST(MomentsLayer, AreThoseOfTheLobeOverAllTexels) {
     const std::uint32_t edge = 512;
     const BoxRoom room(24);
-    const auto distances = mapOf<float>(edge, [&](glm::vec3 d) { return room.trace({4.8f, 2.1f, 5.3f}, d).distance; });
+    const auto distances = mapOf<float>(edge, [&](glm::vec3 d) {
+        return room.trace({4.8f, 2.1f, 5.3f}, d).distance;
+    });
     const float range = 4.0f;
     const auto words = momentsLayer({edge, distances}, range, 14);
     for (const std::uint32_t texel : {0u, 7u, 100u, 105u, 195u}) {
@@ -188,7 +194,8 @@ TEST(MomentsLayer, AreThoseOfTheLobeOverAllTexels) {
             const glm::dvec3 d{directionOfTexel(i % edge, i / edge, edge)};
             const double value = std::min(static_cast<double>(distances[i] / range), 1.0);
             sum += std::pow(std::max(0.0, glm::dot(d, direction)), 50) *
-                   static_cast<double>(texelSolidAngle(i % edge, i / edge, edge)) * glm::dvec3{1, value, value * value};
+                   static_cast<double>(texelSolidAngle(i % edge, i / edge, edge)) *
+                   glm::dvec3{1, value, value * value};
         }
         const glm::vec2 found = unpackMoments(words[texel % 14 + 1 + 16 * (texel / 14 + 1)]);
         EXPECT_NEAR(found.x / (sum.y / sum.x), 1, 0.002);

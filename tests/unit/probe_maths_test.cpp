@@ -52,7 +52,8 @@ TEST(ProbeMaths, AxesAreWhereTheDocumentSays) {
 TEST(ProbeMaths, SolidAnglesSumToTheSphere) {
     const auto sumOf = [](std::uint32_t edge) {
         double sum = 0;
-        for (std::uint32_t i = 0; i < edge * edge; ++i) sum += static_cast<double>(texelSolidAngle(i % edge, i / edge, edge));
+        for (std::uint32_t i = 0; i < edge * edge; ++i)
+            sum += static_cast<double>(texelSolidAngle(i % edge, i / edge, edge));
         return sum / (4 * std::numbers::pi);
     };
     EXPECT_NEAR(sumOf(1024), 1, 2e-7);
@@ -80,14 +81,14 @@ TEST(ProbeMaths, TexelsAreAsWideAsStated) {
     }
 }
 
-TEST(ProbeMaths, TexelsContainTheirCentres) {
+TEST(ProbeMaths, TexelsContainTheirCenters) {
     for (const std::uint32_t edge : {1u, 2u, 7u, 16u, 512u})
         for (std::uint32_t i = 0; i < edge * edge; ++i)
             ASSERT_EQ(texelIndex(directionOfTexel(i % edge, i / edge, edge), edge), i) << edge;
 }
 
 /// Walks over each edge of the map in space and asks which texel lies there.
-TEST(ProbeMaths, BordersRepeatTheNeighbourOnTheSphere) {
+TEST(ProbeMaths, BordersRepeatTheNeighborOnTheSphere) {
     for (const int n : {1, 2, 8, 14}) {
         const auto edge = static_cast<std::uint32_t>(n);
         const float step = 2.0f / static_cast<float>(n);
@@ -101,7 +102,11 @@ TEST(ProbeMaths, BordersRepeatTheNeighbourOnTheSphere) {
             const glm::vec3 onEdge = octDecode({-1, y});
             EXPECT_LT(glm::distance(onEdge, octDecode({-1, -y})), 1e-6f);
             const glm::ivec2 source = borderSource({0, j + 1}, n);
-            EXPECT_LT(glm::distance(onEdge, octDecode({-1, shared::octOfTexel(0, static_cast<std::uint32_t>(source.y), edge).y})), 1e-5f);
+            EXPECT_LT(
+                glm::distance(
+                    onEdge,
+                    octDecode({-1, shared::octOfTexel(0, static_cast<std::uint32_t>(source.y), edge).y})),
+                1e-5f);
         }
         EXPECT_EQ(borderSource({0, 0}, n), glm::ivec2(n - 1, n - 1));
         EXPECT_EQ(borderSource({n + 1, 0}, n), glm::ivec2(0, n - 1));
@@ -129,8 +134,9 @@ TEST(ProbeMaths, NormalsOfAxesAreExactAndAllAreClose) {
 }
 
 TEST(ProbeMaths, DepthCodesAreTheirOwnInverse) {
-    for (const DepthEncoding encoding : {DepthEncoding{.scale = 4, .farMetres = 100}, depthEncodingFor({0, 0, 0}, {10, 4, 10}),
-                                         DepthEncoding{.scale = 0.01f, .farMetres = 20000}}) {
+    for (const DepthEncoding encoding :
+         {DepthEncoding{.scale = 4, .farMetres = 100}, depthEncodingFor({0, 0, 0}, {10, 4, 10}),
+          DepthEncoding{.scale = 0.01f, .farMetres = 20000}}) {
         const DepthCoder coder(encoding);
         float before = -1;
         for (std::uint32_t code = 0; code <= 65534; ++code) {
@@ -183,7 +189,7 @@ TEST(ProbeMaths, SmallFloatsAreTheirOwnInverse) {
     EXPECT_TRUE(std::isnan(shared::unpackSmallFloat((31u << 6) + 1, 6)));
 }
 
-/// Against the definition: of the two neighbours the nearer, of two equally near the even one.
+/// Against the definition: of the two neighbors the nearer, of two equally near the even one.
 TEST(ProbeMaths, SmallFloatsAreRoundedToNearestEven) {
     std::mt19937 random(4);
     std::uniform_real_distribution<double> uniform;
@@ -196,7 +202,8 @@ TEST(ProbeMaths, SmallFloatsAreRoundedToNearestEven) {
             const double middle = (low + high) / 2;
             const auto value = static_cast<float>(i % 3 == 0 ? middle : low + (high - low) * uniform(random));
             const double exact = static_cast<double>(value);
-            const std::uint32_t expected = exact < middle || (exact == middle && code % 2 == 0) ? code : code + 1;
+            const std::uint32_t expected =
+                exact < middle || (exact == middle && code % 2 == 0) ? code : code + 1;
             ASSERT_EQ(shared::packSmallFloat(value, mantissaBits), expected) << value;
         }
     }
@@ -227,7 +234,8 @@ TEST(ProbeMaths, PackingLightHasNoBias) {
     const int count = 1000000;
     for (int i = 0; i < count; ++i) {
         const auto value = static_cast<float>(std::exp2(exponent(random)));
-        const glm::dvec3 relative = glm::dvec3(unpackLight(packLight(glm::vec3{value}))) / static_cast<double>(value) - 1.0;
+        const glm::dvec3 relative =
+            glm::dvec3(unpackLight(packLight(glm::vec3{value}))) / static_cast<double>(value) - 1.0;
         sum += relative;
         worst = glm::max(worst, glm::abs(relative));
     }

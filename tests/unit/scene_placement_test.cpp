@@ -167,7 +167,7 @@ TEST(ProbeGridFit, NothingGiven) {
     expectNear(grid.start, kBox.min);
 }
 
-TEST(ProbeGridFit, StepGivenIsCentred) {
+TEST(ProbeGridFit, StepGivenIsCenterd) {
     const ProbeGrid grid = fitted({.stepMetres = glm::dvec3(3.0, 2.0, 4.0)}, kBox);
     EXPECT_EQ(grid.counts, glm::uvec3(4, 3, 2));
     expectNear(grid.start, {-2.5, -0.5, 1.0});

@@ -214,12 +214,12 @@ TEST(SceneFile, ManyFaultsAreCounted) {
 }
 
 TEST(SceneFile, UnknownKeysAreWarnedAboutWithPlaceAndWhatThereIs) {
-    const Parsed p = parse("[sun]\ncolour = 1\n[[models]]\npath = 'a'\nscale = 2\n[extra]\nx = 1\n");
+    const Parsed p = parse("[sun]\ncolor = 1\n[[models]]\npath = 'a'\nscale = 2\n[extra]\nx = 1\n");
     EXPECT_TRUE(p.scene);
     ASSERT_EQ(p.diagnostics.size(), 3u);
     EXPECT_EQ(p.diagnostics[0].id, "scene-unknown-key");
     EXPECT_THAT(p.diagnostics[0].message,
-                AllOf(HasSubstr("line 2, column 1: unknown key colour"), HasSubstr("direction, irradiance")));
+                AllOf(HasSubstr("line 2, column 1: unknown key color"), HasSubstr("direction, irradiance")));
     EXPECT_THAT(p.diagnostics[1].message, AllOf(HasSubstr("line 5, column 1"), HasSubstr("scaleVec")));
     EXPECT_THAT(p.diagnostics[2].message, AllOf(HasSubstr("line 6, column 2"), HasSubstr("extra")));
 }

@@ -1,4 +1,4 @@
-// Colours and materials of MagicaVoxel files.
+// Colors and materials of MagicaVoxel files.
 #include <gmock/gmock.h>
 
 #include <clocale>
@@ -210,7 +210,7 @@ std::string rampPalette(std::size_t bytes) {
     return palette.substr(0, bytes);
 }
 
-glm::u8vec4 colourOf(const std::string& bytes) {
+glm::u8vec4 colorOf(const std::string& bytes) {
     ImportRun run;
     const auto asset = run(bytes);
     EXPECT_TRUE(asset) << describe(asset.error());
@@ -218,13 +218,13 @@ glm::u8vec4 colourOf(const std::string& bytes) {
 }
 
 TEST(VoxPalette, VoxelUsesTheEntryBelowItsIndex) {
-    EXPECT_EQ(colourOf(oneVoxel(1).chunk("RGBA", rampPalette(1024)).finish()), (glm::u8vec4{0, 0, 0, 255}));
-    EXPECT_EQ(colourOf(oneVoxel(255).chunk("RGBA", rampPalette(1024)).finish()),
+    EXPECT_EQ(colorOf(oneVoxel(1).chunk("RGBA", rampPalette(1024)).finish()), (glm::u8vec4{0, 0, 0, 255}));
+    EXPECT_EQ(colorOf(oneVoxel(255).chunk("RGBA", rampPalette(1024)).finish()),
               (glm::u8vec4{254, 0, 0, 255}));
 }
 
 TEST(VoxPalette, LastEntryMayBeMissing) {
-    EXPECT_EQ(colourOf(oneVoxel(255).chunk("RGBA", rampPalette(1020)).finish()),
+    EXPECT_EQ(colorOf(oneVoxel(255).chunk("RGBA", rampPalette(1020)).finish()),
               (glm::u8vec4{254, 0, 0, 255}));
     ImportRun run;
     const auto asset = run(oneVoxel().chunk("RGBA", rampPalette(1016)).finish());
@@ -238,11 +238,11 @@ TEST(VoxPalette, DefaultBySamples) {
         {7, {255, 204, 255, 255}}, {37, {204, 255, 255, 255}},  {215, {0, 0, 51, 255}},
         {216, {238, 0, 0, 255}},   {225, {17, 0, 0, 255}},      {226, {0, 238, 0, 255}},
         {236, {0, 0, 238, 255}},   {246, {238, 238, 238, 255}}, {255, {17, 17, 17, 255}}};
-    for (const auto& [index, colour] : samples)
-        EXPECT_EQ(colourOf(oneVoxel(index).finish()), colour) << int{index};
+    for (const auto& [index, color] : samples)
+        EXPECT_EQ(colorOf(oneVoxel(index).finish()), color) << int{index};
 }
 
-TEST(VoxPalette, IndexMapChangesNoColour) {
+TEST(VoxPalette, IndexMapChangesNoColor) {
     std::string reversed;
     for (int i = 255; i >= 0; --i) reversed += static_cast<char>(i);
     ImportRun run;

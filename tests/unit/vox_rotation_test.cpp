@@ -21,7 +21,7 @@ using test::VoxWriter;
 const std::set<int> kProper{2,  4,  9,  17, 22, 24, 33, 38,  40,  50,  52,  57,
                             65, 70, 72, 82, 84, 89, 98, 100, 105, 113, 118, 120};
 
-/// Corners and an inner voxel, a colour each, so that no symmetry hides a mistake.
+/// Corners and an inner voxel, a color each, so that no symmetry hides a mistake.
 const std::vector<VoxVoxel> kAsymmetric{{0, 0, 0, 1}, {3, 0, 0, 2}, {0, 2, 0, 3},
                                         {0, 0, 1, 4}, {3, 2, 1, 5}, {1, 1, 0, 6}};
 
@@ -30,7 +30,7 @@ std::string placed(const std::array<std::int32_t, 3>& size, const std::vector<Vo
     return VoxWriter().model(size, voxels).transform({.frames = {frame}}).shape({}).finish();
 }
 
-/// World cells without colours, in pfvox axes.
+/// World cells without colors, in pfvox axes.
 std::vector<Cell> cellsOf(const Result<VoxelAsset>& asset) {
     std::vector<Cell> cells;
     for (const Instance& instance : asset->instances) {
@@ -74,7 +74,7 @@ TEST(VoxRotation, AllFortyEightPlaceVoxelsByTheIntegerFormula) {
     }
 }
 
-// R = [0 1 0; 0 0 -1; -1 0 0]. The pivot of 4 x 3 x 2 is (2, 1, 1). Voxel (0, 0, 0) has its centre at
+// R = [0 1 0; 0 0 -1; -1 0 0]. The pivot of 4 x 3 x 2 is (2, 1, 1). Voxel (0, 0, 0) has its center at
 // (-1.5, -0.5, -0.5) from there, which turns into (-0.5, 0.5, 1.5): cell (-1, 0, 1). Voxel (3, 2, 1) has
 // (1.5, 1.5, 0.5), turned (1.5, -0.5, -1.5): cell (1, -1, -2). Then t, then (x, z, -y - 1).
 TEST(VoxRotation, Byte105ByHand) {
@@ -107,7 +107,7 @@ TEST(VoxRotation, MirrorsOfEvenAndOddEdges) {
 }
 
 // The parent turns a quarter about z (x to y) and moves by 10 along x; the child moves by 5 along its x,
-// which is the world's y. The one voxel's centre (0.5, 0.5, 0.5) turns into (-0.5, 0.5, 0.5).
+// which is the world's y. The one voxel's center (0.5, 0.5, 0.5) turns into (-0.5, 0.5, 0.5).
 TEST(VoxRotation, NestedTransformsByHand) {
     const std::string bytes =
         VoxWriter()

@@ -271,7 +271,7 @@ TEST(VoxScene, SuspiciousVoxelsAreDroppedAndReported) {
     EXPECT_THAT(voxelCounts(*asset), ElementsAre(1));
     EXPECT_EQ(asset->models[0].at({0, 0, 1}), MaterialIndex{6});
     EXPECT_THAT(run.messageOf("vox-voxels-outside"), HasSubstr("2 voxels"));
-    EXPECT_THAT(run.messageOf("vox-voxels-without-colour"), HasSubstr("1 voxels"));
+    EXPECT_THAT(run.messageOf("vox-voxels-without-color"), HasSubstr("1 voxels"));
     EXPECT_THAT(run.messageOf("vox-duplicate-voxels"), HasSubstr("1 voxels"));
 }
 
@@ -424,7 +424,7 @@ TEST(VoxScene, CamerasAndNotes) {
     ImportRun run;
     const auto asset = run(writer.finish());
     ASSERT_TRUE(asset) << describe(asset.error());
-    EXPECT_THAT(asset->source.notes, ElementsAre("colour row 1: skin", "_anim_range: 0 30"));
+    EXPECT_THAT(asset->source.notes, ElementsAre("color row 1: skin", "_anim_range: 0 30"));
     ASSERT_EQ(asset->cameras.size(), 1u);
     EXPECT_DOUBLE_EQ(asset->cameras[0].fovYDegrees, 60.0);
     EXPECT_NEAR(glm::distance(asset->cameras[0].target, glm::dvec3(1.0, 3.0, -2.0)), 0.0, 1e-9);

@@ -18,7 +18,8 @@ constexpr ViewCamera kCamera{.position = {4.0, 5.0, 16.0}, .target = {4.0, 2.0, 
 // What nothing covers: sky between the panels.
 constexpr int kSkyX = 500;
 constexpr int kSkyY = 120;
-// Each picture at once, and the same one every time: software devices need long for the frames of a smooth one.
+// Each picture at once, and the same one every time: software devices need long for the frames of a smooth
+// one.
 constexpr const char* kSettings = "renderScale = 0.25\nantiAliasing = false\n";
 constexpr const char* kSceneText =
     "[[cameras]]\nposition = [4.0, 5.0, 16.0]\ntarget = [4.0, 2.0, 2.0]\nfovYDegrees = 40.0\n"
@@ -36,7 +37,8 @@ class ComposeWindowTest : public WindowFixture {
         VoxelAsset box;
         box.source.voxelSizeMetres = 0.1;
         box.materials = {material(30, 60, 220)};
-        fillBox(box.models.emplace_back(), {.min = {0, 0, 0}, .max = {16, 16, 16}}, [](glm::ivec3) { return MaterialIndex{0}; });
+        fillBox(box.models.emplace_back(), {.min = {0, 0, 0}, .max = {16, 16, 16}},
+                [](glm::ivec3) { return MaterialIndex{0}; });
         box.instances.push_back({.model = 0, .worldFromModel = Affine{0.1}});
         write("box.pf_vox", box);
         writeText(folder / "scene.toml", kSceneText);
@@ -93,7 +95,8 @@ TEST_F(ComposeWindowTest, AModelIsAddedMovedUndoneAndSaved) {
     const glm::dvec3 place = saved()->models[1].translateMetres;
     // By a key,
     key("Right");
-    ASSERT_TRUE(savedAs([&](const Scene& scene) { return scene.models[1].translateMetres.x > place.x + 0.05; }));
+    ASSERT_TRUE(
+        savedAs([&](const Scene& scene) { return scene.models[1].translateMetres.x > place.x + 0.05; }));
     // by the field of the selected model (Ctrl+click types into it),
     screen->send({"mousemove", "50", "279"});
     VirtualScreen::pause(0.4);
@@ -174,7 +177,8 @@ TEST_F(ComposeWindowTest, AMessageIsInFrontOfTheWindows) {
 }
 
 TEST_F(ComposeWindowTest, TheMouseSelectsAndDragsAModel) {
-    writeText(folder / "scene.toml", std::string(kSceneText) + "[[models]]\npath = 'box.pf_vox'\ntranslateVec = [3.2, 0, 3]\n");
+    writeText(folder / "scene.toml",
+              std::string(kSceneText) + "[[models]]\npath = 'box.pf_vox'\ntranslateVec = [3.2, 0, 3]\n");
     ASSERT_TRUE(startAndSee("scene.toml"));
     const Projection view(kCamera, {kWidth, kHeight});
     const glm::dvec2 middle = *view.pointOf({4.0, 0.8, 4.6});
@@ -194,7 +198,8 @@ TEST_F(ComposeWindowTest, TheMouseSelectsAndDragsAModel) {
     EXPECT_EQ(saved()->models[1].translateMetres.y, 0.0);
     EXPECT_EQ(saved()->models[1].translateMetres.z, 3.0);
     key("ctrl+z");
-    ASSERT_TRUE(savedAs([](const Scene& scene) { return scene.models[1].translateMetres.x == 3.2; })) << "one step";
+    ASSERT_TRUE(savedAs([](const Scene& scene) { return scene.models[1].translateMetres.x == 3.2; }))
+        << "one step";
     close();
 }
 
@@ -226,9 +231,12 @@ TEST_F(ComposeWindowTest, ClosingAsksAboutChanges) {
 }
 
 TEST_F(ComposeWindowTest, BoxesProbesAndHandlesAreDrawn) {
-    writeText(folder / "config" / kConfig, std::string(kSettings) + "showProbeGrid = true\nshowBounds = true\n");
-    writeText(folder / "scene.toml", std::string("probeGridPos = [0.5, 0.5, 0.5]\nprobeGridStep = 1.5\nprobeGridCount = [4, 3, 4]\n") +
-                                         kSceneText + "[[models]]\npath = 'box.pf_vox'\ntranslateVec = [3.2, 0, 3]\n");
+    writeText(folder / "config" / kConfig,
+              std::string(kSettings) + "showProbeGrid = true\nshowBounds = true\n");
+    writeText(
+        folder / "scene.toml",
+        std::string("probeGridPos = [0.5, 0.5, 0.5]\nprobeGridStep = 1.5\nprobeGridCount = [4, 3, 4]\n") +
+            kSceneText + "[[models]]\npath = 'box.pf_vox'\ntranslateVec = [3.2, 0, 3]\n");
     ASSERT_TRUE(startAndSee("scene.toml"));
     click(980, 38);   // the statistics' figures change,
     click(652, 602);  // and the log names a folder that does

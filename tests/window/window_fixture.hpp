@@ -20,16 +20,17 @@ namespace pfvox::test {
 inline constexpr std::chrono::seconds kLongestWait{20};
 inline constexpr const char* kConfig = "pfvox/pfview.toml";
 
-/// Sky, sun and room: more than one colour.
+/// Sky, sun and room: more than one color.
 inline bool showsSomething(const viewer::Picture& picture) {
-    std::map<std::uint32_t, std::size_t> colours;
-    for (const std::uint32_t pixel : picture.pixels) ++colours[pixel];
-    return colours.size() > 200;
+    std::map<std::uint32_t, std::size_t> colors;
+    for (const std::uint32_t pixel : picture.pixels) ++colors[pixel];
+    return colors.size() > 200;
 }
 
 class WindowFixture : public ::testing::Test {
   protected:
-    WindowFixture(std::uint32_t widthPixels, std::uint32_t heightPixels) : width(widthPixels), height(heightPixels) {}
+    WindowFixture(std::uint32_t widthPixels, std::uint32_t heightPixels)
+        : width(widthPixels), height(heightPixels) {}
     void SetUp() override {
         const auto xvfb = programPath("Xvfb");
         const auto xdotool = programPath("xdotool");
@@ -98,8 +99,8 @@ class WindowFixture : public ::testing::Test {
         return viewer::readPng(folder / name).value_or(viewer::Picture{});
     }
     /// When its frames have gathered. The cursor is in the picture.
-    ::testing::AssertionResult looksLike(const std::string& golden, double pixelShare = 0.01) {
-        const ImageTolerance tolerance{.channel = 12, .pixelShare = pixelShare};
+    ::testing::AssertionResult looksLike(const std::string& golden, double pixelFraction = 0.01) {
+        const ImageTolerance tolerance{.channel = 12, .pixelFraction = pixelFraction};
         if (std::getenv("PFVOX_UPDATE_GOLDEN") != nullptr) VirtualScreen::pause(12.0);
         ::testing::AssertionResult result = ::testing::AssertionFailure();
         eventually([&] { return bool(result = matchesGolden(screen->picture(), golden, tolerance)); });

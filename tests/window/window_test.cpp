@@ -24,7 +24,9 @@ class WindowTest : public WindowFixture {
 TEST_F(WindowTest, ShowsTheSceneSwitchesViewsAndCloses) {
     ASSERT_TRUE(startAndSee("room.pf_vox"));
     EXPECT_TRUE(looksLike("window-final"));
-    EXPECT_TRUE(matchesGolden(screenshot("room-001.png"), "window-final", {.channel = 12, .pixelShare = 0.01})) << "the file shows what the window shows";
+    EXPECT_TRUE(
+        matchesGolden(screenshot("room-001.png"), "window-final", {.channel = 12, .pixelFraction = 0.01}))
+        << "the file shows what the window shows";
     screen->send({"key", "3"});
     EXPECT_TRUE(looksLike("window-normals"));
     close();
@@ -87,7 +89,8 @@ TEST_F(WindowTest, WindowsHelpAndMessagesAreShown) {
 
 TEST_F(WindowTest, ResizingIsSurvived) {
     ASSERT_TRUE(startAndSee("room.pf_vox"));
-    for (const auto& [columns, rows] : {std::pair("300", "200"), std::pair("77", "355"), std::pair("480", "360")}) {
+    for (const auto& [columns, rows] :
+         {std::pair("300", "200"), std::pair("77", "355"), std::pair("480", "360")}) {
         screen->send({"search", "--name", "pfview", "windowsize", columns, rows});
         VirtualScreen::pause(1.0);
     }
@@ -108,7 +111,8 @@ TEST_F(WindowTest, WhatCannotBeShownIsToldInTheWindow) {
 }
 
 TEST(WindowWithoutScreen, SaysSoAndNamesTheWayWithout) {
-    const ProcessResult result = runProcess({"/usr/bin/env", "-u", "DISPLAY", "-u", "WAYLAND_DISPLAY", PFVOX_PFVIEW});
+    const ProcessResult result =
+        runProcess({"/usr/bin/env", "-u", "DISPLAY", "-u", "WAYLAND_DISPLAY", PFVOX_PFVIEW});
     EXPECT_EQ(result.exitCode, 6);
     EXPECT_THAT(result.err, HasSubstr("--screenshot needs none"));
 }

@@ -59,7 +59,8 @@ struct BatchRoom {
 };
 
 BatchRoom roomFor(int threads, std::size_t commits) {
-    BatchRoom room{.threads = std::max(threads, 1), .committers = std::min(commits, BatchRoom::kMaxCommitters)};
+    BatchRoom room{.threads = std::max(threads, 1),
+                   .committers = std::min(commits, BatchRoom::kMaxCommitters)};
     const int wanted = room.threads - 1 + static_cast<int>(room.committers);
     if (const int startable = affordableThreads(wanted); startable < wanted) {
         room.threads = 1 + std::min(room.threads - 1, (startable + 1) / 2);

@@ -18,9 +18,9 @@ struct BatchItem {
     /// Does the work of asset `index`; returns false when it failed. Called from several threads, each index
     /// once.
     std::function<bool(std::size_t index)> work;
-    /// The part of the work that waits for the disk, called where `work` returned true; returns false when it failed. Runs
-    /// beside further work on threads of its own, more than there are processors: disks finish several syncs in the time
-    /// of one. May be empty.
+    /// The part of the work that waits for the disk, called where `work` returned true; returns false when it
+    /// failed. Runs beside further work on threads of its own, more than there are processors: disks finish
+    /// several syncs in the time of one. May be empty.
     std::function<bool(std::size_t index)> commit = {};
     /// Called for index 0, 1, 2 ... as soon as that asset and all before it are finished; never by two
     /// threads at once.

@@ -47,7 +47,8 @@ std::vector<std::string> withDefaultCommand(const CLI::App& tool, int argc, cons
     const auto commands = tool.get_subcommands([](const CLI::App*) { return true; });
     const bool isCommand =
         std::ranges::any_of(commands, [&](const CLI::App* app) { return app->get_name() == first; });
-    const bool isOfTool = first == "--help" || first == "-h" || first == "--version" || first.starts_with("--generate");
+    const bool isOfTool =
+        first == "--help" || first == "-h" || first == "--version" || first.starts_with("--generate");
     if (isCommand || isOfTool) return arguments;
     arguments.insert(arguments.begin(), helpTextOf(tool).defaultCommand);
     return arguments;

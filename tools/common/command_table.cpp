@@ -27,7 +27,8 @@ std::vector<std::string> listIn(const std::string& text, const std::string& open
     return words;
 }
 
-/// CLI11 keeps no data of ours with an option; its checks' descriptions, which follow the type's name, carry them.
+/// CLI11 keeps no data of ours with an option; its checks' descriptions, which follow the type's name, carry
+/// them.
 OptionRow rowOf(const CLI::Option& option, const std::string& group) {
     const std::string checks = option.get_type_name();
     OptionRow row{.names = {},
@@ -44,7 +45,8 @@ OptionRow rowOf(const CLI::Option& option, const std::string& group) {
     if (row.names.empty()) {
         row.value = option.get_name();
     } else if (option.get_items_expected_max() > 0) {
-        row.value = option.get_option_text().empty() ? checks.substr(0, checks.find(':')) : option.get_option_text();
+        row.value =
+            option.get_option_text().empty() ? checks.substr(0, checks.find(':')) : option.get_option_text();
     }
     return row;
 }
@@ -62,7 +64,8 @@ void collect(const CLI::App& app, const std::string& groupName, Rows& rows) {
         (row.names.empty() ? rows.arguments : rows.options).push_back(std::move(row));
     }
     // CLI11's option groups are subcommands without a name.
-    for (const CLI::App* group : app.get_subcommands([](const CLI::App* sub) { return sub->get_name().empty(); })) {
+    for (const CLI::App* group :
+         app.get_subcommands([](const CLI::App* sub) { return sub->get_name().empty(); })) {
         collect(*group, group->get_group(), rows);
     }
 }
@@ -101,7 +104,8 @@ CommandTable commandTable(const CLI::App& app) {
                        .arguments = std::move(rows.arguments),
                        .exitCodes = exitCodesOf(text),
                        .commands = {}};
-    for (const CLI::App* command : app.get_subcommands([](const CLI::App* sub) { return !sub->get_name().empty(); }))
+    for (const CLI::App* command :
+         app.get_subcommands([](const CLI::App* sub) { return !sub->get_name().empty(); }))
         table.commands.push_back(commandTable(*command));
     return table;
 }

@@ -1,5 +1,5 @@
-// Command table: what a tool's CLI11 app declares, as plain data. Help pages, man pages and completion are written from it
-// and from nothing else, so an option that was added stands in all of them.
+// Command table: what a tool's CLI11 app declares, as plain data. Help pages, man pages and completion are
+// written from it and from nothing else, so an option that was added stands in all of them.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
-// Completion of a tool's command line in three shells: commands, options, values that are known words, and files by their
-// suffixes. Each is one file, to be installed under the name that its shell looks for.
+// Completion of a tool's command line in three shells: commands, options, values that are known words, and
+// files by their suffixes. Each is one file, to be installed under the name that its shell looks for.
 #pragma once
 
 #include <string>

@@ -70,8 +70,10 @@ std::string optionCase(const std::string& name, const CommandTable& command) {
     for (const OptionRow& argument : command.arguments) {
         if (argument.isFile) files = filesCall(name, argument);
     }
-    return fmt::format("    {})\n      if [[ $cur == -* ]]; then\n        {}_words {}\n      else\n        {}\n      fi\n      ;;\n",
-                       command.name, name, fmt::join(allNames(command), " "), files);
+    return fmt::format(
+        "    {})\n      if [[ $cur == -* ]]; then\n        {}_words {}\n      else\n        {}\n      fi\n   "
+        "   ;;\n",
+        command.name, name, fmt::join(allNames(command), " "), files);
 }
 
 }  // namespace
@@ -85,7 +87,8 @@ std::string bashCompletion(const CommandTable& tool) {
         const std::vector<std::string> names = commandNames(tool);
         std::vector<std::string> words = names;
         for (const std::string& option : allNames(tool)) words.push_back(option);
-        text += fmt::format(fmt::runtime(kCommands), fmt::arg("name", name), fmt::arg("words", fmt::join(words, " ")),
+        text += fmt::format(fmt::runtime(kCommands), fmt::arg("name", name),
+                            fmt::arg("words", fmt::join(words, " ")),
                             fmt::arg("commands", fmt::join(names, " | ")));
     }
     text += "  case $command:$prev in\n";

@@ -35,7 +35,8 @@ std::string quoted(const std::string& text) {
 std::string suggestions(const OptionRow& row) {
     if (row.isFile && row.suffixes.empty()) return " -a '(__fish_complete_directories)'";
     if (row.isFile) return fmt::format(" -a '(__fish_complete_suffix {})'", fmt::join(row.suffixes, " "));
-    if (!row.words.empty()) return fmt::format(" -a {}", quoted(fmt::format("{}", fmt::join(row.words, " "))));
+    if (!row.words.empty())
+        return fmt::format(" -a {}", quoted(fmt::format("{}", fmt::join(row.words, " "))));
     return {};
 }
 
@@ -70,7 +71,8 @@ std::string fishCompletion(const CommandTable& tool) {
         for (const OptionRow& option : command->options) text += optionLine(tool, condition, option);
         for (const OptionRow& argument : command->arguments) {
             if (argument.isFile)
-                text += fmt::format("complete -c {} -n {}{}\n", tool.name, quoted(condition), suggestions(argument));
+                text += fmt::format("complete -c {} -n {}{}\n", tool.name, quoted(condition),
+                                    suggestions(argument));
         }
     }
     return text;

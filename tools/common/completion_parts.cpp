@@ -24,7 +24,8 @@ std::string functionName(const CommandTable& tool) {
 
 std::vector<std::string> allNames(const CommandTable& command) {
     std::vector<std::string> names;
-    for (const OptionRow& option : command.options) names.insert(names.end(), option.names.begin(), option.names.end());
+    for (const OptionRow& option : command.options)
+        names.insert(names.end(), option.names.begin(), option.names.end());
     return names;
 }
 

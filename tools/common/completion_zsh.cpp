@@ -33,12 +33,14 @@ std::string valueSpec(const OptionRow& row) {
     return ":" + inSpec(row.value) + ":" + action;
 }
 
-/// One line for each spelling; a spelling excludes none of the others, since several options may be given again.
+/// One line for each spelling; a spelling excludes none of the others, since several options may be given
+/// again.
 std::string optionSpecs(const OptionRow& option) {
     std::string lines;
     for (const std::string& name : option.names) {
         const char* const joint = option.value.empty() ? "" : name.starts_with("--") ? "=" : "+";
-        const std::string spec = fmt::format("*{}{}[{}]{}", name, joint, inSpec(option.meaning), valueSpec(option));
+        const std::string spec =
+            fmt::format("*{}{}[{}]{}", name, joint, inSpec(option.meaning), valueSpec(option));
         lines += " \\\n    " + singleQuoted(spec);
     }
     return lines;
@@ -47,7 +49,8 @@ std::string optionSpecs(const OptionRow& option) {
 std::string commandFunction(const std::string& name, const CommandTable& command) {
     std::string text = fmt::format("{}_{}() {{\n  _arguments -S", name, command.name);
     for (const OptionRow& option : command.options) text += optionSpecs(option);
-    for (const OptionRow& argument : command.arguments) text += " \\\n    " + singleQuoted("*" + valueSpec(argument));
+    for (const OptionRow& argument : command.arguments)
+        text += " \\\n    " + singleQuoted("*" + valueSpec(argument));
     return text + "\n}\n\n";
 }
 

@@ -51,7 +51,8 @@ std::string helpPage(const CommandTable& command) {
     for (const std::string& line : command.text.usage) page += "  " + line + "\n";
     page += commandsText(command) + optionsText(command);
     TextRows examples;
-    for (const Example& example : command.text.examples) examples.emplace_back(example.command, example.meaning);
+    for (const Example& example : command.text.examples)
+        examples.emplace_back(example.command, example.meaning);
     if (!examples.empty()) page += "\nExamples:\n" + twoColumns(examples);
     TextRows codes;
     for (const ExitCodeText& entry : command.exitCodes)
@@ -89,7 +90,8 @@ std::string generate(const CommandTable& tool, const std::string& what) {
 
 }  // namespace
 
-std::unique_ptr<CLI::App> makeTool(const std::string& name, const HelpText& text, const std::string& version) {
+std::unique_ptr<CLI::App> makeTool(const std::string& name, const HelpText& text,
+                                   const std::string& version) {
     auto tool = std::make_unique<CLI::App>(text.summary, name);
     describe(*tool, text);
     tool->set_version_flag("--version", version, "print the version and the formats read and written")
@@ -121,7 +123,8 @@ CLI::Validator suggestFiles(const std::vector<std::string>& suffixes) {
 }
 
 CLI::Validator suggestWords(const std::vector<std::string>& words) {
-    return CLI::Validator([](std::string&) { return std::string(); }, fmt::format("{{{}}}", fmt::join(words, ",")));
+    return CLI::Validator([](std::string&) { return std::string(); },
+                          fmt::format("{{{}}}", fmt::join(words, ",")));
 }
 
 CLI::Validator showDefault(const std::string& text) {

@@ -1,6 +1,6 @@
-// Help page: how a tool and its commands describe themselves. makeTool() and addCommand() make the CLI11 apps to which the
-// options are added; what was added there is the one table of options, from which --help, man pages and completion come
-// (command_table.hpp).
+// Help page: how a tool and its commands describe themselves. makeTool() and addCommand() make the CLI11 apps
+// to which the options are added; what was added there is the one table of options, from which --help, man
+// pages and completion come (command_table.hpp).
 #pragma once
 
 #include <fmt/format.h>
@@ -27,13 +27,13 @@ struct HelpText {
     std::string summary;             ///< one sentence
     std::vector<std::string> usage;  ///< command lines; a line that begins with a space is a remark
     std::vector<Example> examples;
-    std::string defaultCommand = {};           ///< of a tool: the command that need not be named
-    std::vector<std::string> details = {};     ///< paragraphs for the man page
-    std::vector<ExitCode> exitCodes = {};      ///< that can come; empty = all
+    std::string defaultCommand = {};        ///< of a tool: the command that need not be named
+    std::vector<std::string> details = {};  ///< paragraphs for the man page
+    std::vector<ExitCode> exitCodes = {};   ///< that can come; empty = all
 };
 
-/// The tool itself, without options but --help, --version and the hidden --generate man|bash|zsh|fish, which prints the man
-/// page or the completion of a shell by way of CLI::CallForVersion.
+/// The tool itself, without options but --help, --version and the hidden --generate man|bash|zsh|fish, which
+/// prints the man page or the completion of a shell by way of CLI::CallForVersion.
 std::unique_ptr<CLI::App> makeTool(const std::string& name, const HelpText& text, const std::string& version);
 
 /// A subcommand of the tool.
@@ -42,8 +42,8 @@ CLI::App& addCommand(CLI::App& tool, const std::string& name, const HelpText& te
 /// What makeTool() or addCommand() was given; an empty text for other apps.
 const HelpText& helpTextOf(const CLI::App& app);
 
-/// For `check()` of an option or argument: lets everything pass and tells the completion that values are files with these
-/// suffixes, or folders. No suffix: folders only.
+/// For `check()` of an option or argument: lets everything pass and tells the completion that values are
+/// files with these suffixes, or folders. No suffix: folders only.
 CLI::Validator suggestFiles(const std::vector<std::string>& suffixes);
 /// The same for words, where another check decides.
 CLI::Validator suggestWords(const std::vector<std::string>& words);

@@ -42,7 +42,8 @@ std::string filled(const std::string& text) {
 }
 
 std::string upperCase(std::string text) {
-    std::ranges::transform(text, text.begin(), [](char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 32) : c; });
+    std::ranges::transform(text, text.begin(),
+                           [](char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 32) : c; });
     return text;
 }
 
@@ -52,19 +53,22 @@ std::string sentence(const std::string& text) {
 
 std::string taggedOption(const OptionRow& option) {
     std::string tag;
-    for (const std::string& name : option.names) tag += (tag.empty() ? "\\fB" : ", \\fB") + escaped(name) + "\\fR";
+    for (const std::string& name : option.names)
+        tag += (tag.empty() ? "\\fB" : ", \\fB") + escaped(name) + "\\fR";
     if (!option.value.empty()) tag += " \\fI" + escaped(option.value) + "\\fR";
     return ".TP\n" + tag + "\n" + filled(option.meaning);
 }
 
-/// Under the names of their groups when there are several. `afterText`: something stands before it in its section.
+/// Under the names of their groups when there are several. `afterText`: something stands before it in its
+/// section.
 std::string optionList(const std::vector<OptionRow>& options, bool afterText) {
     std::string text;
     std::string group = options.empty() ? "" : options.front().group;
     const bool isOneGroup = options.empty() || options.back().group == group;
     if (!isOneGroup) group.clear();
     for (const OptionRow& option : options) {
-        if (option.group != group) text += (afterText || !text.empty() ? ".PP\n" : "") + filled(option.group + ":");
+        if (option.group != group)
+            text += (afterText || !text.empty() ? ".PP\n" : "") + filled(option.group + ":");
         group = option.group;
         text += taggedOption(option);
     }
@@ -99,11 +103,11 @@ std::string commandSections(const CommandTable& tool, const std::vector<OptionRo
     std::string text = ".SH COMMANDS\n";
     for (const CommandTable& command : tool.commands) {
         std::vector<OptionRow> own = command.options;
-        std::erase_if(own, [&](const OptionRow& option) { return std::ranges::find(common, option) != common.end(); });
+        std::erase_if(
+            own, [&](const OptionRow& option) { return std::ranges::find(common, option) != common.end(); });
         text += ".SS " + escaped(tool.name + " " + command.name) + "\n" + usageLines(command) + ".PP\n" +
                 description(command) + optionList(own, true);
-        if (!command.text.examples.empty())
-            text += ".PP\nExamples:\n" + exampleList(command.text.examples);
+        if (!command.text.examples.empty()) text += ".PP\nExamples:\n" + exampleList(command.text.examples);
     }
     return text;
 }
@@ -127,9 +131,10 @@ std::string shortSummary(const CommandTable& tool) {
 
 std::string manPage(const CommandTable& tool) {
     const std::vector<OptionRow> common = commonOptions(tool);
-    std::string page = fmt::format(".\\\" Made by `{} --generate man` from the options of the program.\n", tool.name);
-    page += fmt::format(".TH {} 1 {} \"pfvox {}\" \"pfvox manual\"\n", upperCase(escaped(tool.name)), PFVOX_MANUAL_DATE,
-                        PFVOX_VERSION);
+    std::string page =
+        fmt::format(".\\\" Made by `{} --generate man` from the options of the program.\n", tool.name);
+    page += fmt::format(".TH {} 1 {} \"pfvox {}\" \"pfvox manual\"\n", upperCase(escaped(tool.name)),
+                        PFVOX_MANUAL_DATE, PFVOX_VERSION);
     page += ".SH NAME\n" + filled(tool.name + " - " + shortSummary(tool));
     page += ".SH SYNOPSIS\n" + usageLines(tool);
     page += ".SH DESCRIPTION\n" + description(tool);

@@ -26,7 +26,8 @@ std::string complaintAbout(const std::vector<InputFile>& inputs, const fs::path&
     }
     std::error_code error;
     if (fs::exists(output, error) && !fs::is_directory(output, error)) {
-        return fmt::format("-o {} is a file, but no {} file: name one, or a folder", output.string(), extension);
+        return fmt::format("-o {} is a file, but no {} file: name one, or a folder", output.string(),
+                           extension);
     }
     const bool looksLikeOtherFile =
         output.has_filename() && output.has_extension() && !fs::exists(output, error);

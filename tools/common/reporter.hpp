@@ -1,4 +1,4 @@
-// Reporter: the one voice of a tool. Results go to stdout, messages to stderr; colour only where it is
+// Reporter: the one voice of a tool. Results go to stdout, messages to stderr; color only where it is
 // wanted.
 //
 // A message has a fixed shape that people and scripts can read:
@@ -51,7 +51,7 @@ class Reporter {
     void clearProgress();
     bool showsProgress() const;
 
-    /// Text in the colours of stdout, for results that name files or states.
+    /// Text in the colors of stdout, for results that name files or states.
     enum class Style { Strong, Good, Bad, Dim };
     std::string styled(Style style, std::string_view text) const;
 

@@ -19,7 +19,8 @@ std::size_t openableFiles() {
     rlimit limit{};
     if (::getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur > kEnough) return kEnough;
     std::size_t unused = 0;
-    for (int fd = 0; fd < static_cast<int>(limit.rlim_cur); ++fd) unused += ::fcntl(fd, F_GETFD) < 0 ? 1u : 0u;
+    for (int fd = 0; fd < static_cast<int>(limit.rlim_cur); ++fd)
+        unused += ::fcntl(fd, F_GETFD) < 0 ? 1u : 0u;
     return std::max<std::size_t>(unused, kReserve + 1) - kReserve;
 }
 

@@ -92,7 +92,8 @@ class Glob {
             } else if (pattern.front() == '*') {
                 steps_.push_back({Step::Kind::AnyName});
             } else {
-                steps_.push_back({pattern.front() == '?' ? Step::Kind::AnyOne : Step::Kind::One, pattern.front()});
+                steps_.push_back(
+                    {pattern.front() == '?' ? Step::Kind::AnyOne : Step::Kind::One, pattern.front()});
             }
             pattern.remove_prefix(taken);
         }
@@ -107,8 +108,10 @@ class Glob {
             if (!reached_[i]) continue;
             const Step& step = steps_[i];
             const bool isInName = c != '/';
-            if (step.kind == Step::Kind::AnyPath || (step.kind == Step::Kind::AnyName && isInName)) next[i] = true;
-            if (step.kind == Step::Kind::AnyOne ? isInName : step.kind == Step::Kind::One && step.character == c)
+            if (step.kind == Step::Kind::AnyPath || (step.kind == Step::Kind::AnyName && isInName))
+                next[i] = true;
+            if (step.kind == Step::Kind::AnyOne ? isInName
+                                                : step.kind == Step::Kind::One && step.character == c)
                 next[i + 1] = true;
         }
         passFreeSteps(next);
@@ -127,7 +130,8 @@ class Glob {
     /// Adds what steps that read nothing lead to.
     void passFreeSteps(std::vector<bool>& reached) const {
         for (std::size_t i = 0; i < steps_.size(); ++i) {
-            if (!reached[i] || steps_[i].kind == Step::Kind::One || steps_[i].kind == Step::Kind::AnyOne) continue;
+            if (!reached[i] || steps_[i].kind == Step::Kind::One || steps_[i].kind == Step::Kind::AnyOne)
+                continue;
             reached[i + 1] = true;
             if (steps_[i].kind == Step::Kind::SkipFolders) reached[i + 3] = true;  // over "**" and '/'
         }

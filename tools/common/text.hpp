@@ -33,7 +33,7 @@ std::size_t displayWidth(std::string_view utf8);
 /// \u{202e}.
 std::string escaped(std::string_view text);
 
-/// The candidate that takes the fewest insertions, deletions, replacements and swaps of neighbours to reach,
+/// The candidate that takes the fewest insertions, deletions, replacements and swaps of neighbors to reach,
 /// if it is near enough to be what the user meant. Case does not matter; the beginning of a word counts as
 /// near.
 std::optional<std::string> nearestWord(std::string_view word, std::span<const std::string> candidates);

@@ -7,8 +7,8 @@
 
 namespace pfvox::tools {
 
-/// After a parse that failed: "unknown option --forse; did you mean --force?", or nothing when every option was known.
-/// `command` is the tool itself where it has no commands.
+/// After a parse that failed: "unknown option --forse; did you mean --force?", or nothing when every option
+/// was known. `command` is the tool itself where it has no commands.
 std::optional<std::string> complaintAboutUnknownOption(const CLI::App& tool, const CLI::App& command);
 
 }  // namespace pfvox::tools

@@ -22,13 +22,15 @@ namespace fs = std::filesystem;
 namespace {
 
 HelpText helpText() {
-    return {.summary = "Bakes the indirect light of a scene into a grid of light-field probes. What is up to date by "
-                       "its content is left alone.",
-            .usage = {"probe-bake [bake] [options] <scene.toml | file.pf_vox> -o <file.pf_probe>"},
-            .examples = {{"probe-bake scene.toml -o scene.pf_probe", "the whole grid of the scene"},
-                         {"probe-bake scene.toml -o scene.pf_probe --resume", "go on after Ctrl-C"},
-                         {"probe-bake scene.toml -o a.pf_probe --probes 0:500", "a part, for `probe-bake merge`"},
-                         {"probe-bake hall.pf_vox -o hall.pf_probe --profile compact", "one model, small maps"}}};
+    return {
+        .summary =
+            "Bakes the indirect light of a scene into a grid of light-field probes. What is up to date by "
+            "its content is left alone.",
+        .usage = {"probe-bake [bake] [options] <scene.toml | file.pf_vox> -o <file.pf_probe>"},
+        .examples = {{"probe-bake scene.toml -o scene.pf_probe", "the whole grid of the scene"},
+                     {"probe-bake scene.toml -o scene.pf_probe --resume", "go on after Ctrl-C"},
+                     {"probe-bake scene.toml -o a.pf_probe --probes 0:500", "a part, for `probe-bake merge`"},
+                     {"probe-bake hall.pf_vox -o hall.pf_probe --profile compact", "one model, small maps"}}};
 }
 
 /// Shows how far the bake is, and stops it on Ctrl-C.
@@ -79,13 +81,15 @@ Existing inspect(const BakeOptions& options, const Limits& limits) {
     return existing;
 }
 
-std::string reasonFor(const BakeOptions& options, const Existing& existing, const ContentKey& wanted, const ProbeRange& range) {
+std::string reasonFor(const BakeOptions& options, const Existing& existing, const ContentKey& wanted,
+                      const ProbeRange& range) {
     if (!existing.present) return "there was no output";
     if (options.force) return "--force";
     if (!existing.key) return "the existing output is not a complete PF_PROBE file of this version";
     if (existing.range != range) return "the existing output holds other probes";
-    return *existing.key == wanted ? "same scene, settings, program and device as in the last bake"
-                                   : "the scene, the settings, the program or the device changed since the last bake";
+    return *existing.key == wanted
+               ? "same scene, settings, program and device as in the last bake"
+               : "the scene, the settings, the program or the device changed since the last bake";
 }
 
 /// Fails when the output is one that must not be replaced: better now than after the bake.
@@ -100,10 +104,11 @@ Result<void> checkOutput(const BakeOptions& options) {
 /// Adds what the user can do about it.
 Error withRemedy(Error error, const BakeOptions& options, const gpu::Device* device) {
     if (error.code == ErrorCode::GpuOutOfMemory && device != nullptr) {
-        error.message += fmt::format("; {} has {}, {} were in use. Smaller models, a smaller --profile or --resolution, "
-                                     "or another --device need less",
-                                     device->info().name, formatBytes(device->info().localMemoryBytes),
-                                     formatBytes(device->memory().peakBytes));
+        error.message += fmt::format(
+            "; {} has {}, {} were in use. Smaller models, a smaller --profile or --resolution, "
+            "or another --device need less",
+            device->info().name, formatBytes(device->info().localMemoryBytes),
+            formatBytes(device->memory().peakBytes));
     } else if (error.code == ErrorCode::FileNotWritable) {
         error.message += "; finished probes stay in " + probeJournalPath(options.output).string() +
                          ": make room and run again with --resume";
@@ -118,13 +123,15 @@ Result<void> checkGrid(const LoadedScene& scene) {
     const ProbeGrid& grid = scene.probes;
     const glm::dvec3 low{grid.start - grid.step};
     const glm::dvec3 high{grid.pointOf(static_cast<std::uint32_t>(grid.probeCount() - 1)) + grid.step};
-    const bool apart = glm::any(glm::greaterThan(low, scene.bounds.max)) || glm::any(glm::lessThan(high, scene.bounds.min));
+    const bool apart =
+        glm::any(glm::greaterThan(low, scene.bounds.max)) || glm::any(glm::lessThan(high, scene.bounds.min));
     if (!apart) return {};
     const auto text = [](const glm::dvec3& p) { return fmt::format("{:.2f} {:.2f} {:.2f}", p.x, p.y, p.z); };
-    return fail(ErrorCode::BadValue,
-                fmt::format("the probe grid ({} to {} m) is outside the scene ({} to {} m): set probeGridPos, "
-                            "probeGridStep and probeGridCount, or leave them out",
-                            text(low), text(high), text(scene.bounds.min), text(scene.bounds.max)));
+    return fail(
+        ErrorCode::BadValue,
+        fmt::format("the probe grid ({} to {} m) is outside the scene ({} to {} m): set probeGridPos, "
+                    "probeGridStep and probeGridCount, or leave them out",
+                    text(low), text(high), text(scene.bounds.min), text(scene.bounds.max)));
 }
 
 Result<void> writeDependencies(const BakeOptions& options, const LoadedScene& scene) {
@@ -133,14 +140,15 @@ Result<void> writeDependencies(const BakeOptions& options, const LoadedScene& sc
     for (const PlacedAsset& part : scene.parts) {
         if (part.model >= scene.scene.models.size()) continue;
         const fs::path model = fs::path(options.input).parent_path() / scene.scene.models[part.model].path;
-        if (canonicalName(model) != canonicalName(options.input) && std::ranges::count(rule.prerequisites, model) == 0)
+        if (canonicalName(model) != canonicalName(options.input) &&
+            std::ranges::count(rule.prerequisites, model) == 0)
             rule.prerequisites.push_back(model);
     }
     return writeDepfile(options.depfile, {rule});
 }
 
-/// --if-changed: the same bytes get their old time back. With a depfile and without it, what is up to date gets the
-/// present one, or make would run the bake for ever.
+/// --if-changed: the same bytes get their old time back. With a depfile and without it, what is up to date
+/// gets the present one, or make would run the bake for ever.
 void setTimeStamp(const BakeOptions& options, const Existing& existing, bool upToDate, const Limits& limits) {
     std::error_code ignored;
     if (upToDate && !options.ifChanged && !options.depfile.empty())
@@ -184,12 +192,16 @@ class BakeRun {
         }
         const std::size_t warnings = Reporter::warningCount(diagnostics.entries());
         if (options_.warningsAsErrors && warnings != 0)
-            return fail(ErrorCode::BadValue, plural(warnings, "warning") + ", taken as errors: nothing baked");
-        PFVOX_TRY(gpu::Device, device, gpu::Device::open({.selector = options_.device, .memoryBytes = options_.deviceMemoryMiB << 20}));
+            return fail(ErrorCode::BadValue,
+                        plural(warnings, "warning") + ", taken as errors: nothing baked");
+        PFVOX_TRY(
+            gpu::Device, device,
+            gpu::Device::open({.selector = options_.device, .memoryBytes = options_.deviceMemoryMiB << 20}));
         outcome_.device = device.info().name;
         const Existing existing = inspect(options_, limits_);
         const ContentKey key = bakeContentKey(scene, *settings, device.info());
-        const ProbeRange range = settings->range.value_or(ProbeRange{0, static_cast<std::uint32_t>(scene.probes.probeCount())});
+        const ProbeRange range =
+            settings->range.value_or(ProbeRange{0, static_cast<std::uint32_t>(scene.probes.probeCount())});
         outcome_.contentKey = key;
         outcome_.reason = reasonFor(options_, existing, key, range);
         const bool isUpToDate = !options_.force && existing.key == key && existing.range == range;
@@ -214,9 +226,10 @@ class BakeRun {
         outcome_.error = error;
         if (options_.common.json) reporter_.jsonLine(jsonText(bakeJson(outcome_)));
         if (error.code == ErrorCode::Cancelled) {
-            reporter_.status(fmt::format("stopped: {} of {} are in {}; the same command with --resume goes on",
-                                         formatCount(last_.probesDone), plural(last_.probes, "probe"),
-                                         probeJournalPath(options_.output).string()));
+            reporter_.status(
+                fmt::format("stopped: {} of {} are in {}; the same command with --resume goes on",
+                            formatCount(last_.probesDone), plural(last_.probes, "probe"),
+                            probeJournalPath(options_.output).string()));
         } else {
             reporter_.error(error);
         }

@@ -82,7 +82,7 @@ void addLightOptions(CLI::App& command, BakeOptions& options) {
             ->group(kBaking);
     command
         .add_option("--resolution", options.resolution,
-                    "own edges of the maps instead: depth,light,irradiance,moments in texels, 0 = none")
+                    "own resolution of the maps instead: depth,light,irradiance,moments in texels, 0 = none")
         ->option_text("D,L,I,M")
         ->excludes(profile)
         ->group(kBaking);
@@ -125,7 +125,8 @@ void addRunOptions(CLI::App& command, BakeOptions& options) {
         ->check(showDefault("what there is"))
         ->check(numberFrom(1, 1 << 24))
         ->group(kBaking);
-    command.add_flag("--list-devices", options.listDevices, "print the devices and do nothing")->group(kBaking);
+    command.add_flag("--list-devices", options.listDevices, "print the devices and do nothing")
+        ->group(kBaking);
     command
         .add_option("--probes", options.probes,
                     "bake probes A to B - 1 only, or part K of N, from 0: a shard for merge")
@@ -134,13 +135,18 @@ void addRunOptions(CLI::App& command, BakeOptions& options) {
         ->group(kBaking);
     command.add_flag("--resume", options.resume, "take finished probes of a stopped bake from the journal")
         ->group(kBaking);
-    command.add_option("--depfile", options.depfile, "write what the output was made from, for make and ninja")
+    command
+        .add_option("--depfile", options.depfile, "write what the output was made from, for make and ninja")
         ->option_text("FILE")
         ->check(suggestFiles({".d"}))
         ->group(group::kBuild);
-    command.add_flag("--if-changed", options.ifChanged, "keep the time stamp of an output that stays the same (ninja)")
+    command
+        .add_flag("--if-changed", options.ifChanged,
+                  "keep the time stamp of an output that stays the same (ninja)")
         ->group(group::kBuild);
-    command.add_flag("--warnings-as-errors", options.warningsAsErrors, "a scene with warnings fails, nothing is baked")
+    command
+        .add_flag("--warnings-as-errors", options.warningsAsErrors,
+                  "a scene with warnings fails, nothing is baked")
         ->group(group::kBuild);
 }
 
@@ -163,7 +169,8 @@ void addBakeOptions(CLI::App& command, BakeOptions& options) {
         ->group(group::kInputOutput);
     command.add_flag("--force", options.force, "bake what is up to date, too; replace a read-only output")
         ->group(group::kInputOutput);
-    command.add_flag("--dry-run", options.dryRun, "write nothing, say what would be baked")->group(group::kInputOutput);
+    command.add_flag("--dry-run", options.dryRun, "write nothing, say what would be baked")
+        ->group(group::kInputOutput);
     command.add_flag("--explain", options.explain, "say why it is baked or not")->group(group::kInputOutput);
     addLightOptions(command, options);
     addRunOptions(command, options);
@@ -179,7 +186,8 @@ tl::expected<ProbeRange, std::string> parseProbePart(const std::string& text, st
         return tl::make_unexpected(fmt::format("--probes {}: not part K of N, K from 0 to N - 1", text));
     const std::uint64_t parts = part->at(1);
     if (parts > probeCount)
-        return tl::make_unexpected(fmt::format("--probes {}: {} probes do not make {} parts", text, probeCount, parts));
+        return tl::make_unexpected(
+            fmt::format("--probes {}: {} probes do not make {} parts", text, probeCount, parts));
     const auto end = [&](std::uint64_t k) { return static_cast<std::uint32_t>(probeCount * k / parts); };
     return ProbeRange{end(part->at(0)), end(part->at(0) + 1)};
 }
@@ -190,26 +198,30 @@ tl::expected<ProbeRange, std::string> parseProbeRange(const std::string& text, s
     if (text.find('/') != std::string::npos) return parseProbePart(text, probeCount);
     const auto ends = parseCounts(text, ':');
     if (!ends || ends->size() != 2)
-        return tl::make_unexpected(fmt::format("--probes {}: not two numbers with a colon between them", text));
-    if (ends->at(0) >= ends->at(1) || ends->at(1) > probeCount)
         return tl::make_unexpected(
-            fmt::format("--probes {}: not a range of the {} probes, which are 0:{}", text, probeCount, probeCount));
+            fmt::format("--probes {}: not two numbers with a colon between them", text));
+    if (ends->at(0) >= ends->at(1) || ends->at(1) > probeCount)
+        return tl::make_unexpected(fmt::format("--probes {}: not a range of the {} probes, which are 0:{}",
+                                               text, probeCount, probeCount));
     return ProbeRange{static_cast<std::uint32_t>(ends->at(0)), static_cast<std::uint32_t>(ends->at(1))};
 }
 
 tl::expected<ProbeResolution, std::string> parseResolution(const std::string& text) {
-    const auto edges = parseCounts(text, ',');
-    if (!edges || edges->size() != 4)
-        return tl::make_unexpected(fmt::format("--resolution {}: not four numbers with commas between them", text));
+    const auto maps = parseCounts(text, ',');
+    if (!maps || maps->size() != 4)
+        return tl::make_unexpected(
+            fmt::format("--resolution {}: not four numbers with commas between them", text));
     std::array<std::uint32_t, 4> checked{};
     for (std::size_t i = 0; i < checked.size(); ++i) {
-        if (edges->at(i) > kMaxProbeEdge)
-            return tl::make_unexpected(fmt::format("--resolution {}: edges are 0 to {}", text, kMaxProbeEdge));
-        checked[i] = static_cast<std::uint32_t>(edges->at(i));
+        if (maps->at(i) > kMaxProbeResolution)
+            return tl::make_unexpected(
+                fmt::format("--resolution {}: resolutions are 0 to {}", text, kMaxProbeResolution));
+        checked[i] = static_cast<std::uint32_t>(maps->at(i));
     }
     if (checked[0] % 16 != 0)
-        return tl::make_unexpected(fmt::format("--resolution {}: the first edge must be a multiple of 16", text));
-    return ProbeResolution{.depth = checked[0], .light = checked[1], .irradiance = checked[2], .moments = checked[3]};
+        return tl::make_unexpected(fmt::format("--resolution {}: the first must be a multiple of 16", text));
+    return ProbeResolution{
+        .depth = checked[0], .light = checked[1], .irradiance = checked[2], .moments = checked[3]};
 }
 
 tl::expected<BakeSettings, std::string> settingsOf(const BakeOptions& options, std::uint64_t probeCount) {
@@ -231,7 +243,8 @@ tl::expected<BakeSettings, std::string> settingsOf(const BakeOptions& options, s
     settings.maxSamples = options.samples.value_or(options.maxSamples);
     settings.minSamples = options.samples.value_or(settings.minSamples);
     if (settings.maxSamples % kSampleBatch != 0)
-        return tl::make_unexpected(fmt::format("{} samples: must be a multiple of {}", settings.maxSamples, kSampleBatch));
+        return tl::make_unexpected(
+            fmt::format("{} samples: must be a multiple of {}", settings.maxSamples, kSampleBatch));
     if (options.samples) settings.noiseTarget = 0.0f;
     if (options.noise) settings.noiseTarget = static_cast<float>(*options.noise);
     settings.maxBounces = options.bounces;

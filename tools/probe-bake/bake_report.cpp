@@ -15,7 +15,9 @@ double raysPerSecond(const BakePass& pass) {
     return pass.gpuMs > 0.0 ? static_cast<double>(pass.rays) / (pass.gpuMs * 1e-3) : 0.0;
 }
 
-Json passJson(const BakePass& pass) { return {{"rays", pass.rays}, {"gpuMs", pass.gpuMs}}; }
+Json passJson(const BakePass& pass) {
+    return {{"rays", pass.rays}, {"gpuMs", pass.gpuMs}};
+}
 
 const char* statusOf(const BakeOutcome& outcome) {
     if (!outcome.error) return outcome.report.upToDate ? "up-to-date" : outcome.planned ? "planned" : "baked";
@@ -27,18 +29,19 @@ std::string noiseLine(const BakeReport& report) {
     if (report.meanSamples) line += fmt::format("{:.1f} paths a texel, ", *report.meanSamples);
     line += "noise " + percentText(report.meanError);
     if (report.maxError) line += fmt::format(" (worst probe {})", percentText(report.maxError));
-    if (report.cappedTileShare)
+    if (report.noisyTileFraction)
         line += fmt::format(", {} of the tiles stopped at the largest number",
-                            percentText(report.cappedTileShare));
+                            percentText(report.noisyTileFraction));
     return line + "\n";
 }
 
 std::string proximityLine(const ProximityReport& proximity) {
     if (proximity.surfaceCells == 0) return {};
-    return fmt::format("  proximity grid: {} with surface, {} of them seen by no probe; {:.2f} % of the samples seen\n",
-                       plural(proximity.surfaceCells, "cell"), formatCount(proximity.uncoveredCells),
-                       100.0 * static_cast<double>(proximity.seenSamples) /
-                           static_cast<double>(std::max<std::uint64_t>(proximity.samples, 1)));
+    return fmt::format(
+        "  proximity grid: {} with surface, {} of them seen by no probe; {:.2f} % of the samples seen\n",
+        plural(proximity.surfaceCells, "cell"), formatCount(proximity.uncoveredCells),
+        100.0 * static_cast<double>(proximity.seenSamples) /
+            static_cast<double>(std::max<std::uint64_t>(proximity.samples, 1)));
 }
 
 }  // namespace
@@ -46,9 +49,11 @@ std::string proximityLine(const ProximityReport& proximity) {
 std::string progressLine(const std::string& output, const BakeProgress& progress) {
     std::string line = fmt::format("{}: probe {} of {}", output, formatCount(progress.probesDone),
                                    formatCount(progress.probes));
-    if (progress.probesReused != 0) line += fmt::format(" ({} from the journal)", formatCount(progress.probesReused));
+    if (progress.probesReused != 0)
+        line += fmt::format(" ({} from the journal)", formatCount(progress.probesReused));
     if (progress.elapsedSeconds > 0.0)
-        line += fmt::format(", {} rays/s", formatRoughly(static_cast<double>(progress.rays) / progress.elapsedSeconds));
+        line += fmt::format(", {} rays/s",
+                            formatRoughly(static_cast<double>(progress.rays) / progress.elapsedSeconds));
     if (progress.secondsLeft) line += fmt::format(", {} left", formatDuration(*progress.secondsLeft));
     return line;
 }
@@ -67,8 +72,8 @@ std::string bakeText(const BakeOutcome& outcome, bool explain) {
     text += fmt::format("  {} rays for geometry at {} rays/s, {} for light at {} rays/s on {}\n",
                         formatRoughly(static_cast<double>(report.geometry.rays)),
                         formatRoughly(raysPerSecond(report.geometry)),
-                        formatRoughly(static_cast<double>(report.light.rays)), formatRoughly(raysPerSecond(report.light)),
-                        outcome.device);
+                        formatRoughly(static_cast<double>(report.light.rays)),
+                        formatRoughly(raysPerSecond(report.light)), outcome.device);
     return text + noiseLine(report) + proximityLine(report.proximity);
 }
 
@@ -91,10 +96,10 @@ Json bakeJson(const BakeOutcome& outcome) {
     json["writeMs"] = report.writeMs;
     json["totalMs"] = report.totalMs;
     json["emitterFaces"] = report.emitterFaces;
-    json["cappedRays"] = report.cappedRays;
+    json["stepLimitRays"] = report.stepLimitRays;
     json["meanError"] = orNull(report.meanError);
     json["maxError"] = orNull(report.maxError);
-    json["cappedTileShare"] = orNull(report.cappedTileShare);
+    json["noisyTileFraction"] = orNull(report.noisyTileFraction);
     json["meanSamples"] = orNull(report.meanSamples);
     json["surfaceCells"] = report.proximity.surfaceCells;
     json["uncoveredCells"] = report.proximity.uncoveredCells;

@@ -24,12 +24,15 @@ struct CompareOptions {
 };
 
 HelpText helpText() {
-    return {.summary = "Compares two PF_PROBE files of one grid, layer by layer. Exit code 1 if they are further apart "
-                       "than the options allow.",
-            .usage = {"probe-bake compare [options] <a.pf_probe> <b.pf_probe>"},
-            .examples = {{"probe-bake compare a.pf_probe b.pf_probe", "how far they are apart"},
-                         {"probe-bake compare --equal a.pf_probe b.pf_probe", "fails unless all probes are equal"},
-                         {"probe-bake compare --min-psnr 45 a.pf_probe b.pf_probe", "fails below 45 dB"}}};
+    return {
+        .summary =
+            "Compares two PF_PROBE files of one grid, layer by layer. Exit code 1 if they are further apart "
+            "than the options allow.",
+        .usage = {"probe-bake compare [options] <a.pf_probe> <b.pf_probe>"},
+        .examples = {
+            {"probe-bake compare a.pf_probe b.pf_probe", "how far they are apart"},
+            {"probe-bake compare --equal a.pf_probe b.pf_probe", "fails unless all probes are equal"},
+            {"probe-bake compare --min-psnr 45 a.pf_probe b.pf_probe", "fails below 45 dB"}}};
 }
 
 std::string differenceText(const FieldDifference& difference) {
@@ -37,7 +40,8 @@ std::string differenceText(const FieldDifference& difference) {
                                    plural(difference.probes, "probe"));
     for (const std::string& name : difference.differentSettings) text += "  baked with " + name + "\n";
     if (!difference.differentRecords.empty()) {
-        text += fmt::format("  {} in another state or place:", plural(difference.differentRecords.size(), "probe"));
+        text += fmt::format("  {} in another state or place:",
+                            plural(difference.differentRecords.size(), "probe"));
         for (std::size_t i = 0; i < std::min(kFewProbes, difference.differentRecords.size()); ++i)
             text += fmt::format(" {}", difference.differentRecords[i]);
         text += difference.differentRecords.size() > kFewProbes ? " ...\n" : "\n";
@@ -52,16 +56,16 @@ std::string differenceText(const FieldDifference& difference) {
                  {"normals, degrees", Align::Right}});
     for (const LayerDifference& layer : difference.layers) {
         const bool light = layer.layer == ProbeLayer::Light || layer.layer == ProbeLayer::Irradiance;
-        table.addRow({std::string(toString(layer.layer)), formatCount(layer.words),
-                      formatCount(layer.differentWords), fmt::format("{:.4g}", layer.largest),
-                      layer.largestProbe == kNoProbe ? "-" : std::to_string(layer.largestProbe),
-                      !light || layer.words == 0 ? "-"
-                      : layer.psnrDecibel        ? fmt::format("{:.2f}", *layer.psnrDecibel)
-                                                 : "inf",
-                      layer.withinOneShare ? fmt::format("{:.3f} %", 100.0 * *layer.withinOneShare) : "-",
-                      layer.layer == ProbeLayer::DepthNormal
-                          ? fmt::format("{:.2f}", layer.largestNormalDegrees)
-                          : "-"});
+        table.addRow(
+            {std::string(toString(layer.layer)), formatCount(layer.words), formatCount(layer.differentWords),
+             fmt::format("{:.4g}", layer.largest),
+             layer.largestProbe == kNoProbe ? "-" : std::to_string(layer.largestProbe),
+             !light || layer.words == 0 ? "-"
+             : layer.psnrDecibel        ? fmt::format("{:.2f}", *layer.psnrDecibel)
+                                        : "inf",
+             layer.withinOneFraction ? fmt::format("{:.3f} %", 100.0 * *layer.withinOneFraction) : "-",
+             layer.layer == ProbeLayer::DepthNormal ? fmt::format("{:.2f}", layer.largestNormalDegrees)
+                                                    : "-"});
     }
     return text + table.render(2);
 }
@@ -83,7 +87,7 @@ Json differenceJson(const CompareOptions& options, const FieldDifference& differ
              {"largest", layer.largest},
              {"largestProbe", layer.largestProbe == kNoProbe ? Json(nullptr) : Json(layer.largestProbe)},
              {"psnrDecibel", orNull(layer.psnrDecibel)},
-             {"withinOneShare", orNull(layer.withinOneShare)},
+             {"withinOneFraction", orNull(layer.withinOneFraction)},
              {"largestNormalDegrees", layer.largestNormalDegrees}});
     return json;
 }
@@ -95,10 +99,10 @@ std::string complaint(const CompareOptions& options, const FieldDifference& diff
     for (const LayerDifference& layer : difference.layers) {
         if (options.minPsnr && layer.psnrDecibel && *layer.psnrDecibel < *options.minPsnr)
             return fmt::format("layer {}: {:.2f} dB", toString(layer.layer), *layer.psnrDecibel);
-        if (options.minWithinOne && layer.withinOneShare &&
-            100.0 * *layer.withinOneShare < *options.minWithinOne)
+        if (options.minWithinOne && layer.withinOneFraction &&
+            100.0 * *layer.withinOneFraction < *options.minWithinOne)
             return fmt::format("layer {}: {:.3f} % of the codes within 1", toString(layer.layer),
-                               100.0 * *layer.withinOneShare);
+                               100.0 * *layer.withinOneFraction);
         if ((options.minPsnr || options.minWithinOne) && layer.words == 0 && !difference.equal())
             return fmt::format("layer {}: no probe is active in both", toString(layer.layer));
     }
@@ -109,7 +113,8 @@ ExitCode runCompare(const CLI::App& command, const CompareOptions& options) {
     Reporter reporter(options.common.reporterSettings());
     const auto limits = parseLimits(options.common.limits);
     if (!limits) return usageError(command, limits.error());
-    if (options.files.size() != 2) return usageError(command, "two files are compared, and only one was named");
+    if (options.files.size() != 2)
+        return usageError(command, "two files are compared, and only one was named");
     const auto stopWith = [&](const Error& error) {
         reporter.error(error);
         return exitCodeOf(error.code);
@@ -144,7 +149,9 @@ Command makeCompareCommand(CLI::App& tool) {
         ->group(group::kInputOutput);
     command.add_flag("--equal", options->requireEqual, "fail unless the hashes of all probes are equal")
         ->group(group::kInputOutput);
-    command.add_option("--min-psnr", options->minPsnr, "fail when the light of a layer is further apart, dB, 0 to 200")
+    command
+        .add_option("--min-psnr", options->minPsnr,
+                    "fail when the light of a layer is further apart, dB, 0 to 200")
         ->option_text("DB")
         ->check(numberFrom(0, 200))
         ->group(group::kInputOutput);

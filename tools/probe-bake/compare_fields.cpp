@@ -27,7 +27,8 @@ struct LayerSums {
 };
 
 double degreesBetween(glm::vec3 a, glm::vec3 b) {
-    return std::acos(std::clamp(glm::dot(glm::dvec3{a}, glm::dvec3{b}), -1.0, 1.0)) * 180.0 / 3.14159265358979;
+    return std::acos(std::clamp(glm::dot(glm::dvec3{a}, glm::dvec3{b}), -1.0, 1.0)) * 180.0 /
+           3.14159265358979;
 }
 
 void addDepthCodes(LayerSums& sums, std::uint32_t probe, std::uint32_t a, std::uint32_t b) {
@@ -59,7 +60,8 @@ void addMoments(LayerSums& sums, std::uint32_t probe, std::uint32_t a, std::uint
 }
 
 template <class Word, class Add>
-void addWords(LayerSums& sums, std::uint32_t probe, const std::vector<Word>& a, const std::vector<Word>& b, Add add) {
+void addWords(LayerSums& sums, std::uint32_t probe, const std::vector<Word>& a, const std::vector<Word>& b,
+              Add add) {
     for (std::size_t i = 0; i < a.size(); ++i) {
         add(sums, probe, std::uint32_t{a[i]}, std::uint32_t{b[i]});
         sums.difference.differentWords += a[i] != b[i] ? 1u : 0u;
@@ -69,7 +71,9 @@ void addWords(LayerSums& sums, std::uint32_t probe, const std::vector<Word>& a, 
 
 using AllSums = std::array<LayerSums, kProbeLayerCount>;
 
-LayerSums& at(AllSums& sums, ProbeLayer layer) { return sums[static_cast<std::size_t>(layer)]; }
+LayerSums& at(AllSums& sums, ProbeLayer layer) {
+    return sums[static_cast<std::size_t>(layer)];
+}
 
 void addProbe(AllSums& sums, std::uint32_t probe, const ProbeData& a, const ProbeData& b) {
     addWords(at(sums, ProbeLayer::DepthNormal), probe, a.depthNormal, b.depthNormal, addDepthNormal);
@@ -87,7 +91,8 @@ std::vector<LayerDifference> finished(const AllSums& sums, const ProbeResolution
         if (!resolution.has(layer.layer)) continue;
         const auto words = static_cast<double>(layer.words);
         const bool depth = layer.layer == ProbeLayer::DepthNormal || layer.layer == ProbeLayer::MinDepth;
-        if (depth && layer.words != 0) layer.withinOneShare = static_cast<double>(sums[i].withinOne) / words;
+        if (depth && layer.words != 0)
+            layer.withinOneFraction = static_cast<double>(sums[i].withinOne) / words;
         const double peak = sums[i].peak > 0.0 ? sums[i].peak : sums[i].secondPeak;
         if (sums[i].squares > 0.0)
             layer.psnrDecibel = 10.0 * std::log10(peak * peak / (sums[i].squares / words));

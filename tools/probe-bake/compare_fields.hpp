@@ -14,10 +14,10 @@ struct LayerDifference {
     ProbeLayer layer = ProbeLayer::DepthNormal;
     std::uint64_t words = 0;
     std::uint64_t differentWords = 0;
-    double largest = 0.0;               ///< depth codes, light (largest channel), moments
+    double largest = 0.0;  ///< depth codes, light (largest channel), moments
     std::uint32_t largestProbe = kNoProbe;
     std::optional<double>
-        withinOneShare;  ///< of depth codes: at most one apart; nothing = no words, or not depth
+        withinOneFraction;  ///< of depth codes: at most one apart; nothing = no words, or not depth
     double largestNormalDegrees = 0.0;  ///< of DepthNormal
     /// Of light, against the largest value of the first file, of the second where the first is dark; nothing
     /// = equal, no words, or not light.
@@ -26,9 +26,9 @@ struct LayerDifference {
 
 struct FieldDifference {
     std::uint32_t probes = 0;
-    std::uint32_t equalProbes = 0;                  ///< equal hashes
-    std::vector<std::uint32_t> differentRecords;    ///< state or place
-    std::vector<std::string> differentSettings;     ///< "--seed 1 and --seed 2", "another scene"
+    std::uint32_t equalProbes = 0;                ///< equal hashes
+    std::vector<std::uint32_t> differentRecords;  ///< state or place
+    std::vector<std::string> differentSettings;   ///< "--seed 1 and --seed 2", "another scene"
     std::vector<LayerDifference> layers;
     bool equal() const { return equalProbes == probes; }
 };

@@ -34,8 +34,9 @@ Command makeInfoCommand(CLI::App& tool) {
         first = false;
         return std::nullopt;
     };
-    return {.app = &command,
-            .run = [&command, options, visit] { return visitFiles(command, *options, kPfProbeExtension, visit); }};
+    return {.app = &command, .run = [&command, options, visit] {
+                return visitFiles(command, *options, kPfProbeExtension, visit);
+            }};
 }
 
 }  // namespace pfvox::tools

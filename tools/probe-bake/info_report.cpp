@@ -16,8 +16,8 @@ namespace {
 
 constexpr std::size_t kFewRows = 12;
 constexpr std::size_t kIndent = 2;
-constexpr std::array kLayers{ProbeLayer::DepthNormal, ProbeLayer::Light, ProbeLayer::MinDepth, ProbeLayer::Irradiance,
-                             ProbeLayer::Moments};
+constexpr std::array kLayers{ProbeLayer::DepthNormal, ProbeLayer::Light, ProbeLayer::MinDepth,
+                             ProbeLayer::Irradiance, ProbeLayer::Moments};
 
 template <class Vector>
 Json vectorJson(const Vector& v) {
@@ -73,11 +73,12 @@ Json resolutionJson(const ProbeResolution& resolution) {
 }
 
 Json lightContentJson(std::uint32_t content) {
-    constexpr std::array<std::pair<std::uint32_t, const char*>, 5> kNames{{{kLightOfSky, "sky"},
-                                                                           {kLightOfEmitters, "emitters"},
-                                                                           {kLightOfBouncedSun, "bounced-sun"},
-                                                                           {kLightOfDirectSun, "direct-sun"},
-                                                                           {kLightOfSpecular, "specular"}}};
+    constexpr std::array<std::pair<std::uint32_t, const char*>, 5> kNames{
+        {{kLightOfSky, "sky"},
+         {kLightOfEmitters, "emitters"},
+         {kLightOfBouncedSun, "bounced-sun"},
+         {kLightOfDirectSun, "direct-sun"},
+         {kLightOfSpecular, "specular"}}};
     Json names = Json::array();
     for (const auto& [bit, name] : kNames) {
         if ((content & bit) != 0) names.push_back(name);
@@ -112,14 +113,15 @@ Json probeJson(const ProbeFileInfo& info, std::size_t i) {
     json["index"] = info.field.range.first + i;
     json["position"] = vectorJson(info.positions[i]);
     json["state"] = toString(record.state);
-    json["missShare"] = orNull(counted.missShare);
+    json["missFraction"] = orNull(counted.missFraction);
     json["meanIndirect"] = counted.meanIndirect ? vectorJson(*counted.meanIndirect) : Json(nullptr);
     json["maxIndirect"] = orNull(counted.maxIndirect);
     json["minDepth"] = orNull(counted.minDepthMetres);
     json["meanDepth"] = orNull(counted.meanDepthMetres);
     json["error"] = orNull(errorOf(info, record));
-    json["cappedTileShare"] =
-        info.field.settings.isAdaptive() && record.isActive() ? Json(record.cappedTileShare) : Json(nullptr);
+    json["noisyTileFraction"] = info.field.settings.isAdaptive() && record.isActive()
+                                    ? Json(record.noisyTileFraction)
+                                    : Json(nullptr);
     json["hash"] = fmt::format("{:016x}", record.hash);
     return json;
 }
@@ -142,7 +144,7 @@ std::string probeTable(const ProbeFileInfo& info, std::size_t maxRows) {
         table.addRow({std::to_string(info.field.range.first + i),
                       fmt::format("{:.2f} {:.2f} {:.2f}", at.x, at.y, at.z),
                       std::string(toString(info.records[i].state)),
-                      counted.missShare ? fmt::format("{:.1f} %", 100.0 * *counted.missShare) : "-",
+                      counted.missFraction ? fmt::format("{:.1f} %", 100.0 * *counted.missFraction) : "-",
                       mean ? fmt::format("{:.3f} {:.3f} {:.3f}", mean->x, mean->y, mean->z) : "-",
                       orDash(counted.maxIndirect), orDash(counted.minDepthMetres),
                       orDash(counted.meanDepthMetres),
@@ -150,19 +152,21 @@ std::string probeTable(const ProbeFileInfo& info, std::size_t maxRows) {
     }
     std::string text = table.render(kIndent);
     if (shown < info.probes.size())
-        text += fmt::format("{:{}}... and {} more; -v shows all\n", "", kIndent, formatCount(info.probes.size() - shown));
+        text += fmt::format("{:{}}... and {} more; -v shows all\n", "", kIndent,
+                            formatCount(info.probes.size() - shown));
     return text;
 }
 
 std::string layerTable(const ProbeFileInfo& info) {
     Table table({{"layer"},
-                 {"edge", Align::Right},
+                 {"resolution", Align::Right},
                  {"stored", Align::Right},
                  {"raw", Align::Right},
                  {"of file", Align::Right}});
     for (const LayerSize& size : info.layers) {
-        table.addRow({std::string(toString(size.layer)), std::to_string(info.field.resolution.edgeOf(size.layer)),
-                      formatBytes(size.storedBytes), formatBytes(size.rawBytes),
+        table.addRow({std::string(toString(size.layer)),
+                      std::to_string(info.field.resolution.edgeOf(size.layer)), formatBytes(size.storedBytes),
+                      formatBytes(size.rawBytes),
                       fmt::format("{:.1f} %", 100.0 * static_cast<double>(size.storedBytes) /
                                                   static_cast<double>(info.fileBytes))});
     }
@@ -182,16 +186,18 @@ std::string headline(const ProbeFileInfo& info) {
     std::string text = fmt::format("PF_PROBE {}.{}, {}, profile {}, content key {}\n", kPfProbeVersionMajor,
                                    info.versionMinor, formatBytes(info.fileBytes),
                                    toString(profileOf(field.resolution)), info.contentKey.hex());
-    text += fmt::format("  grid {} x {} x {} from {:.2f} {:.2f} {:.2f} m, step {:.2f} {:.2f} {:.2f} m\n", grid.counts.x,
-                        grid.counts.y, grid.counts.z, grid.start.x, grid.start.y, grid.start.z, grid.step.x,
-                        grid.step.y, grid.step.z);
-    if (!field.isWhole()) text += fmt::format("  a shard: probes {} to {}\n", field.range.first, field.range.end - 1);
+    text += fmt::format("  grid {} x {} x {} from {:.2f} {:.2f} {:.2f} m, step {:.2f} {:.2f} {:.2f} m\n",
+                        grid.counts.x, grid.counts.y, grid.counts.z, grid.start.x, grid.start.y, grid.start.z,
+                        grid.step.x, grid.step.y, grid.step.z);
+    if (!field.isWhole())
+        text += fmt::format("  a shard: probes {} to {}\n", field.range.first, field.range.end - 1);
     text += fmt::format("  {}, --seed {}, by {} on {}\n", samplesText(settings), settings.seed,
                         field.toolName, field.deviceName);
     text += "  " + probeSettingsText(settings) + "\n";
     if (info.proximityCounts)
-        text += fmt::format("  proximity grid {} x {} x {}, {} with probes\n", info.proximityCounts->x,
-                            info.proximityCounts->y, info.proximityCounts->z, plural(info.coveredCells, "cell"));
+        text +=
+            fmt::format("  proximity grid {} x {} x {}, {} with probes\n", info.proximityCounts->x,
+                        info.proximityCounts->y, info.proximityCounts->z, plural(info.coveredCells, "cell"));
     return text;
 }
 
@@ -226,7 +232,9 @@ Result<ProbeFileInfo> readProbeFileInfo(const std::filesystem::path& file, const
 
 std::string infoText(const ProbeFileInfo& info, const Reporter& reporter, bool complete) {
     const auto title = [&](std::string_view word, std::size_t count) {
-        return "\n" + reporter.styled(Reporter::Style::Strong, fmt::format("{} ({})", word, formatCount(count))) + "\n";
+        return "\n" +
+               reporter.styled(Reporter::Style::Strong, fmt::format("{} ({})", word, formatCount(count))) +
+               "\n";
     };
     std::string text = reporter.styled(Reporter::Style::Strong, info.file.string()) + "\n" + headline(info);
     text += title("Probes", info.probes.size()) + probeTable(info, complete ? info.probes.size() : kFewRows);
@@ -255,12 +263,13 @@ Json infoJson(const ProbeFileInfo& info) {
     json["tool"] = field.toolName;
     json["proximity"] = Json(nullptr);
     if (info.proximityCounts)
-        json["proximity"] = {{"counts", vectorJson(*info.proximityCounts)}, {"coveredCells", info.coveredCells}};
+        json["proximity"] = {{"counts", vectorJson(*info.proximityCounts)},
+                             {"coveredCells", info.coveredCells}};
     json["states"] = countsJson(countProbes(info.records));
     json["layers"] = Json::array();
     for (const LayerSize& size : info.layers)
         json["layers"].push_back({{"name", toString(size.layer)},
-                                  {"edge", field.resolution.edgeOf(size.layer)},
+                                  {"resolution", field.resolution.edgeOf(size.layer)},
                                   {"storedBytes", size.storedBytes},
                                   {"rawBytes", size.rawBytes}});
     json["probes"] = Json::array();

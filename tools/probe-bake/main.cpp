@@ -13,32 +13,39 @@ namespace pfvox::tools {
 namespace {
 
 std::string versionText() {
-    return fmt::format("probe-bake {}\nreads   scene.toml, PF_VOX {}.{}, PF_PROBE {}.{}\nwrites  {} (PF_PROBE {}.{})",
-                       PFVOX_VERSION, kPfVoxVersionMajor, kPfVoxVersionMinor, kPfProbeVersionMajor,
-                       kPfProbeVersionMinor, kPfProbeExtension, kPfProbeVersionMajor, kPfProbeVersionMinor);
+    return fmt::format(
+        "probe-bake {}\nreads   scene.toml, PF_VOX {}.{}, PF_PROBE {}.{}\nwrites  {} (PF_PROBE {}.{})",
+        PFVOX_VERSION, kPfVoxVersionMajor, kPfVoxVersionMinor, kPfProbeVersionMajor, kPfProbeVersionMinor,
+        kPfProbeExtension, kPfProbeVersionMajor, kPfProbeVersionMinor);
 }
 
 HelpText helpText() {
-    return {.summary = "probe-bake bakes the indirect light of a scene into a grid of light-field probes, and inspects "
-                       "such files.",
-            .usage = {"probe-bake [bake] [options] <scene.toml | file.pf_vox> -o <file.pf_probe>",
-                      "probe-bake info [options] <file.pf_probe>...", "probe-bake validate [options] <file.pf_probe>...",
-                      "probe-bake compare [options] <a.pf_probe> <b.pf_probe>",
-                      "probe-bake merge [options] <shard.pf_probe>... -o <file.pf_probe>",
-                      "probe-bake verify [options] <scene.toml | file.pf_vox> <file.pf_probe>"},
-            .examples = {{"probe-bake scene.toml -o scene.pf_probe", "bake the scene's grid"},
-                         {"probe-bake info hall.pf_probe", "what is in it"}},
-            .defaultCommand = "bake",
-            .details = {"Results go to stdout, messages to stderr. An output appears complete or not at all. A bake that "
-                        "was stopped leaves its finished probes in a journal beside the output; --resume goes on from there.",
-                        "The same scene, settings and device give the same bytes, in one run or in shards that are merged."}};
+    return {
+        .summary =
+            "probe-bake bakes the indirect light of a scene into a grid of light-field probes, and inspects "
+            "such files.",
+        .usage = {"probe-bake [bake] [options] <scene.toml | file.pf_vox> -o <file.pf_probe>",
+                  "probe-bake info [options] <file.pf_probe>...",
+                  "probe-bake validate [options] <file.pf_probe>...",
+                  "probe-bake compare [options] <a.pf_probe> <b.pf_probe>",
+                  "probe-bake merge [options] <shard.pf_probe>... -o <file.pf_probe>",
+                  "probe-bake verify [options] <scene.toml | file.pf_vox> <file.pf_probe>"},
+        .examples = {{"probe-bake scene.toml -o scene.pf_probe", "bake the scene's grid"},
+                     {"probe-bake info hall.pf_probe", "what is in it"}},
+        .defaultCommand = "bake",
+        .details = {
+            "Results go to stdout, messages to stderr. An output appears complete or not at all. A bake that "
+            "was stopped leaves its finished probes in a journal beside the output; --resume goes on from "
+            "there.",
+            "The same scene, settings and device give the same bytes, in one run or in shards that are "
+            "merged."}};
 }
 
 ExitCode run(int argc, char** argv) {
     const auto tool = makeTool("probe-bake", helpText(), versionText());
     tool->require_subcommand(1);
-    const std::array commands{makeBakeCommand(*tool), makeInfoCommand(*tool), makeValidateCommand(*tool), makeCompareCommand(*tool),
-                              makeMergeCommand(*tool), makeVerifyCommand(*tool)};
+    const std::array commands{makeBakeCommand(*tool),    makeInfoCommand(*tool),  makeValidateCommand(*tool),
+                              makeCompareCommand(*tool), makeMergeCommand(*tool), makeVerifyCommand(*tool)};
     if (const auto exitCode = parseCommandLine(*tool, withDefaultCommand(*tool, argc, argv))) {
         return *exitCode;
     }

@@ -22,30 +22,35 @@ struct MergeOptions : ReadOptions {
 };
 
 HelpText helpText() {
-    return {.summary = "Joins the shards of a bake, in any order, to the file that one bake would have written.",
-            .usage = {"probe-bake merge [options] <shard.pf_probe | folder | @list | ->... -o <file.pf_probe>"},
-            .examples = {{"probe-bake merge a.pf_probe b.pf_probe -o hall.pf_probe", "two shards"},
-                         {"probe-bake merge shards -o hall.pf_probe --scene hall.toml", "a folder of them; with the proximity grid"}}};
+    return {
+        .summary = "Joins the shards of a bake, in any order, to the file that one bake would have written.",
+        .usage = {"probe-bake merge [options] <shard.pf_probe | folder | @list | ->... -o <file.pf_probe>"},
+        .examples = {{"probe-bake merge a.pf_probe b.pf_probe -o hall.pf_probe", "two shards"},
+                     {"probe-bake merge shards -o hall.pf_probe --scene hall.toml",
+                      "a folder of them; with the proximity grid"}}};
 }
 
-/// The content key that all shards share; none when they differ, or when the result lacks the proximity grid that a bake would
-/// have made: it must not count as up to date.
-ContentKey commonKey(const std::vector<std::filesystem::path>& shards, bool withProximity, const Limits& limits) {
+/// The content key that all shards share; none when they differ, or when the result lacks the proximity grid
+/// that a bake would have made: it must not count as up to date.
+ContentKey commonKey(const std::vector<std::filesystem::path>& shards, bool withProximity,
+                     const Limits& limits) {
     std::optional<ContentKey> common;
     for (const std::filesystem::path& shard : shards) {
         DiagnosticList ignored;  // the merge reports them
         const auto reader = ProbeFileReader::open(shard, limits, ignored);
-        if (!reader || (!withProximity && reader->info().resolution.depth != 0) || (common && *common != reader->contentKey())) return {};
+        if (!reader || (!withProximity && reader->info().resolution.depth != 0) ||
+            (common && *common != reader->contentKey()))
+            return {};
         common = reader->contentKey();
     }
     return common.value_or(ContentKey{});
 }
 
-/// The proximity grid, which shards cannot have: from the scene they were baked from. None without a scene or depth maps, and
-/// none when probes are missing or doubled, which the merge reports.
+/// The proximity grid, which shards cannot have: from the scene they were baked from. None without a scene or
+/// depth maps, and none when probes are missing or doubled, which the merge reports.
 Result<std::optional<ProximityGrid>> proximityFor(const MergeOptions& options,
-                                                  const std::vector<std::filesystem::path>& files, const Limits& limits,
-                                                  DiagnosticList& diagnostics) {
+                                                  const std::vector<std::filesystem::path>& files,
+                                                  const Limits& limits, DiagnosticList& diagnostics) {
     if (options.scene.empty()) return std::nullopt;
     PFVOX_TRY(const LoadedScene, scene, loadScene(options.scene, limits, diagnostics));
     std::vector<ProbeFileReader> shards;
@@ -71,7 +76,9 @@ ExitCode runMerge(const CLI::App& command, const MergeOptions& options) {
         reporter.error(error);
         return exitCodeOf(error.code);
     };
-    const auto wanted = [](const std::filesystem::path& file) { return file.extension() == kPfProbeExtension; };
+    const auto wanted = [](const std::filesystem::path& file) {
+        return file.extension() == kPfProbeExtension;
+    };
     DiagnosticList diagnostics;
     const auto inputs = collectInputs(options.inputs, {.wanted = wanted, .skippedFolder = {}}, diagnostics);
     if (!inputs) return stopWith(inputs.error());
@@ -85,8 +92,9 @@ ExitCode runMerge(const CLI::App& command, const MergeOptions& options) {
 
     const auto proximity = proximityFor(options, shards, *limits, diagnostics);
     if (!proximity) return stopWith(proximity.error());
-    const ProbeMergeSettings settings{
-        .contentKey = commonKey(shards, proximity->has_value(), *limits), .proximity = *proximity, .allowPart = options.allowPart};
+    const ProbeMergeSettings settings{.contentKey = commonKey(shards, proximity->has_value(), *limits),
+                                      .proximity = *proximity,
+                                      .allowPart = options.allowPart};
     const auto merged = mergeProbeFields(shards, options.output, settings, *limits, diagnostics);
     reporter.diagnostics(options.output, diagnostics.entries());
     if (!merged) return stopWith(merged.error());
@@ -106,7 +114,9 @@ Command makeMergeCommand(CLI::App& tool) {
         ->required()
         ->check(suggestFiles({kPfProbeExtension}))
         ->group(group::kInputOutput);
-    command.add_option("--scene", options->scene, "what was baked: makes the proximity grid, which shards cannot have")
+    command
+        .add_option("--scene", options->scene,
+                    "what was baked: makes the proximity grid, which shards cannot have")
         ->option_text("SCENE")
         ->check(suggestFiles({".toml", ".pf_vox"}))
         ->group(group::kInputOutput);

@@ -30,11 +30,12 @@ struct FreeBytes {
 
 }  // namespace
 
-Result<void> writePicture(const std::filesystem::path& file, glm::uvec2 size, std::span<const glm::vec3> linear) {
+Result<void> writePicture(const std::filesystem::path& file, glm::uvec2 size,
+                          std::span<const glm::vec3> linear) {
     std::vector<std::uint8_t> bytes;
     bytes.reserve(3 * linear.size());
-    for (const glm::vec3& colour : linear)
-        for (const float channel : {colour.x, colour.y, colour.z}) bytes.push_back(srgbByte(channel));
+    for (const glm::vec3& color : linear)
+        for (const float channel : {color.x, color.y, color.z}) bytes.push_back(srgbByte(channel));
     const std::unique_ptr<spng_ctx, FreeContext> context(spng_ctx_new(SPNG_CTX_ENCODER));
     spng_ihdr header{};
     header.width = size.x;
@@ -44,17 +45,24 @@ Result<void> writePicture(const std::filesystem::path& file, glm::uvec2 size, st
     spng_set_option(context.get(), SPNG_ENCODE_TO_BUFFER, 1);
     int status = spng_set_ihdr(context.get(), &header);
     if (status == 0)
-        status = spng_encode_image(context.get(), bytes.data(), bytes.size(), SPNG_FMT_PNG, SPNG_ENCODE_FINALIZE);
+        status =
+            spng_encode_image(context.get(), bytes.data(), bytes.size(), SPNG_FMT_PNG, SPNG_ENCODE_FINALIZE);
     std::size_t pngBytes = 0;
     int fetched = 0;
-    const std::unique_ptr<void, FreeBytes> png(status == 0 ? spng_get_png_buffer(context.get(), &pngBytes, &fetched) : nullptr);
-    if (!png) return fail(ErrorCode::Internal, std::string("PNG: ") + spng_strerror(status != 0 ? status : fetched));
+    const std::unique_ptr<void, FreeBytes> png(
+        status == 0 ? spng_get_png_buffer(context.get(), &pngBytes, &fetched) : nullptr);
+    if (!png)
+        return fail(ErrorCode::Internal,
+                    std::string("PNG: ") + spng_strerror(status != 0 ? status : fetched));
     return io::writeFileAtomically(file, {static_cast<const std::byte*>(png.get()), pngBytes});
 }
 
-glm::vec3 heatColour(float value) {
-    static const std::array<glm::vec3, 5> kStops{
-        {{0.0f, 0.0f, 0.05f}, {0.02f, 0.08f, 0.45f}, {0.05f, 0.45f, 0.15f}, {0.9f, 0.6f, 0.05f}, {1.0f, 1.0f, 1.0f}}};
+glm::vec3 heatColor(float value) {
+    static const std::array<glm::vec3, 5> kStops{{{0.0f, 0.0f, 0.05f},
+                                                  {0.02f, 0.08f, 0.45f},
+                                                  {0.05f, 0.45f, 0.15f},
+                                                  {0.9f, 0.6f, 0.05f},
+                                                  {1.0f, 1.0f, 1.0f}}};
     const float at = 4.0f * std::clamp(std::isfinite(value) ? value : 1.0f, 0.0f, 1.0f);
     const auto low = static_cast<std::size_t>(std::min(at, 3.0f));
     return glm::mix(kStops[low], kStops[low + 1], at - static_cast<float>(low));

@@ -9,10 +9,11 @@
 
 namespace pfvox::tools {
 
-/// 8-bit sRGB of linear colours, rows from the top; equal pictures give equal bytes. Errors: FileNotWritable.
-Result<void> writePicture(const std::filesystem::path& file, glm::uvec2 size, std::span<const glm::vec3> linear);
+/// 8-bit sRGB of linear colors, rows from the top; equal pictures give equal bytes. Errors: FileNotWritable.
+Result<void> writePicture(const std::filesystem::path& file, glm::uvec2 size,
+                          std::span<const glm::vec3> linear);
 
 /// Dark blue for 0 over green and yellow to white for 1.
-glm::vec3 heatColour(float value);
+glm::vec3 heatColor(float value);
 
 }  // namespace pfvox::tools

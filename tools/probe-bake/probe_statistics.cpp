@@ -12,24 +12,24 @@ namespace pfvox::tools {
 namespace {
 
 void addDepth(const ProbeFieldInfo& info, const ProbeData& data, ProbeStatistics& statistics) {
-    const std::uint32_t edge = info.resolution.depth;
+    const std::uint32_t resolution = info.resolution.depth;
     const DepthCoder coder(info.depth);
     double all = 0.0;
     double hit = 0.0;
     double depthSum = 0.0;
     std::uint32_t nearest = kDepthMissCode;
-    for (std::uint32_t y = 0; y < edge; ++y) {
-        for (std::uint32_t x = 0; x < edge; ++x) {
-            const double weight = texelSolidAngle(x, y, edge);
+    for (std::uint32_t y = 0; y < resolution; ++y) {
+        for (std::uint32_t x = 0; x < resolution; ++x) {
+            const double weight = texelSolidAngle(x, y, resolution);
             all += weight;
-            const std::uint32_t code = depthCodeOf(data.depthNormal[x + edge * y]);
+            const std::uint32_t code = depthCodeOf(data.depthNormal[x + resolution * y]);
             if (code == kDepthMissCode) continue;
             hit += weight;
             depthSum += weight * coder.decode(code);
             nearest = std::min(nearest, code);
         }
     }
-    statistics.missShare = hit > 0.0 ? (all - hit) / all : 1.0;
+    statistics.missFraction = hit > 0.0 ? (all - hit) / all : 1.0;
     if (hit == 0.0) return;
     statistics.minDepthMetres = coder.decode(nearest);
     statistics.meanDepthMetres = depthSum / hit;
@@ -37,28 +37,29 @@ void addDepth(const ProbeFieldInfo& info, const ProbeData& data, ProbeStatistics
 
 /// Solid angle of the part of a light texel that meets a surface: light maps may be coarser than depth maps.
 double hitWeight(const ProbeFieldInfo& info, const ProbeData& data, std::uint32_t x, std::uint32_t y) {
-    const std::uint32_t edge = info.resolution.depth;
-    if (edge == 0) return texelSolidAngle(x, y, info.resolution.light);
-    const std::uint32_t block = std::max(edge / info.resolution.light, 1u);
+    const std::uint32_t resolution = info.resolution.depth;
+    if (resolution == 0) return texelSolidAngle(x, y, info.resolution.light);
+    const std::uint32_t block = std::max(resolution / info.resolution.light, 1u);
     double weight = 0.0;
-    for (std::uint32_t j = y * block; j < std::min((y + 1) * block, edge); ++j) {
-        for (std::uint32_t i = x * block; i < std::min((x + 1) * block, edge); ++i) {
-            if (depthCodeOf(data.depthNormal[i + edge * j]) != kDepthMissCode) weight += texelSolidAngle(i, j, edge);
+    for (std::uint32_t j = y * block; j < std::min((y + 1) * block, resolution); ++j) {
+        for (std::uint32_t i = x * block; i < std::min((x + 1) * block, resolution); ++i) {
+            if (depthCodeOf(data.depthNormal[i + resolution * j]) != kDepthMissCode)
+                weight += texelSolidAngle(i, j, resolution);
         }
     }
     return weight;
 }
 
 void addLight(const ProbeFieldInfo& info, const ProbeData& data, ProbeStatistics& statistics) {
-    const std::uint32_t edge = info.resolution.light;
+    const std::uint32_t resolution = info.resolution.light;
     glm::dvec3 sum(0.0);
     double weights = 0.0;
     double largest = 0.0;
-    for (std::uint32_t y = 0; y < edge; ++y) {
-        for (std::uint32_t x = 0; x < edge; ++x) {
+    for (std::uint32_t y = 0; y < resolution; ++y) {
+        for (std::uint32_t x = 0; x < resolution; ++x) {
             const double weight = hitWeight(info, data, x, y);
             if (weight == 0.0) continue;
-            const glm::dvec3 light{unpackLight(data.light[x + edge * y])};
+            const glm::dvec3 light{unpackLight(data.light[x + resolution * y])};
             sum += weight * light;
             weights += weight;
             largest = std::max({largest, light.x, light.y, light.z});

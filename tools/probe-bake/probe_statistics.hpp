@@ -11,11 +11,11 @@ namespace pfvox::tools {
 
 /// Means are over solid angle. Figures of maps that are not there, or of which no texel counts, are empty.
 struct ProbeStatistics {
-    std::optional<double> missShare;          ///< of all directions
-    std::optional<glm::dvec3> meanIndirect;   ///< I over the directions that meet a surface
-    std::optional<double> maxIndirect;        ///< largest channel of any texel
+    std::optional<double> missFraction;      ///< of all directions
+    std::optional<glm::dvec3> meanIndirect;  ///< I over the directions that meet a surface
+    std::optional<double> maxIndirect;       ///< largest channel of any texel
     std::optional<double> minDepthMetres;
-    std::optional<double> meanDepthMetres;    ///< over the directions that meet a surface
+    std::optional<double> meanDepthMetres;  ///< over the directions that meet a surface
 };
 
 /// `data` fits the resolution of `info`.

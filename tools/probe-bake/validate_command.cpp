@@ -11,11 +11,14 @@ namespace pfvox::tools {
 namespace {
 
 HelpText helpText() {
-    return {.summary = "Checks PF_PROBE files, every map of every probe, and prints all findings. Exit code 4 if there "
-                       "is any.",
-            .usage = {"probe-bake validate [options] <file.pf_probe | folder | @list | ->..."},
-            .examples = {{"probe-bake validate hall.pf_probe", "one file"},
-                         {"probe-bake validate --json build", "one JSON object for every PF_PROBE file of a folder"}}};
+    return {
+        .summary =
+            "Checks PF_PROBE files, every map of every probe, and prints all findings. Exit code 4 if there "
+            "is any.",
+        .usage = {"probe-bake validate [options] <file.pf_probe | folder | @list | ->..."},
+        .examples = {
+            {"probe-bake validate hall.pf_probe", "one file"},
+            {"probe-bake validate --json build", "one JSON object for every PF_PROBE file of a folder"}}};
 }
 
 }  // namespace

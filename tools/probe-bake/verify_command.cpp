@@ -61,9 +61,9 @@ std::optional<glm::uvec2> parseSize(const std::string& text) {
 
 /// A view of the whole from its front, for scenes without cameras.
 Camera outsideCamera(const WorldBounds& bounds) {
-    const glm::dvec3 centre = 0.5 * (bounds.min + bounds.max);
+    const glm::dvec3 center = 0.5 * (bounds.min + bounds.max);
     const double diagonal = glm::length(bounds.max - bounds.min);
-    return {.name = "outside", .position = centre + diagonal * glm::dvec3{0.5, 0.4, 0.8}, .target = centre};
+    return {.name = "outside", .position = center + diagonal * glm::dvec3{0.5, 0.4, 0.8}, .target = center};
 }
 
 Result<std::vector<Camera>> chosenCameras(const VerifyOptions& options, const LoadedScene& scene) {
@@ -258,16 +258,14 @@ Command makeVerifyCommand(CLI::App& tool) {
         ->check(numberFrom(2, 65536))
         ->group(kVerifying);
     command
-        .add_option(
-            "--reference-noise", options->referenceNoisePercent,
-            "go on with the reference until its noise is at most so much of the error measured")
+        .add_option("--reference-noise", options->referenceNoisePercent,
+                    "go on with the reference until its noise is at most so much of the error measured")
         ->option_text("PERCENT")
         ->check(showDefault(options->referenceNoisePercent))
         ->check(numberFrom(0, 1e6))
         ->group(kVerifying);
     command
-        .add_option("--max-samples", options->maxSamples,
-                    "with at most so many paths a pixel, 2 to 1048576")
+        .add_option("--max-samples", options->maxSamples, "with at most so many paths a pixel, 2 to 1048576")
         ->option_text("N")
         ->check(showDefault("16 times --samples"))
         ->check(numberFrom(2, kMostSamples))

@@ -68,7 +68,7 @@ Table verdictTable() {
 void addRow(Table& table, const CameraVerdict& verdict) {
     const VerifyScore& score = verdict.score;
     const auto tier = [&](gpu::ProbeTier t) {
-        return percent(score.tierShares[static_cast<std::size_t>(t)]);
+        return percent(score.tierFractions[static_cast<std::size_t>(t)]);
     };
     table.addRow({verdict.camera.name, formatCount(score.surfacePixels), formatCount(score.withoutValue),
                   tier(gpu::ProbeTier::Texels), tier(gpu::ProbeTier::Compact), tier(gpu::ProbeTier::Nearest),
@@ -90,11 +90,11 @@ std::string uncertaintyOf(const CameraVerdict& verdict) {
 
 Json verdictJson(const CameraVerdict& verdict) {
     const VerifyScore& score = verdict.score;
-    Json shares;
+    Json fractions;
     Json tiers = Json::object();
     for (std::size_t i = 0; i < gpu::kProbeTierCount; ++i) {
         const std::string name(toString(static_cast<gpu::ProbeTier>(i)));
-        shares[name] = score.tierShares[i];
+        fractions[name] = score.tierFractions[i];
         if (score.byTier[i].pixels != 0) tiers[name] = partJson(score.byTier[i]);
     }
     Json materials = Json::object();
@@ -107,7 +107,7 @@ Json verdictJson(const CameraVerdict& verdict) {
             {"height", verdict.picture.height},
             {"surfacePixels", score.surfacePixels},
             {"withoutValue", score.withoutValue},
-            {"tierShares", shares},
+            {"tierFractions", fractions},
             {"reference", referenceJson(verdict)},
             {"all", partJson(score.all)},
             {"byTier", tiers},
@@ -131,7 +131,7 @@ Result<void> writePictures(const std::filesystem::path& folder, const CameraVerd
         const auto exposure = static_cast<float>(verdict.score.exposure);
         images[0].push_back(exposure * pixel.lookup);
         images[1].push_back(exposure * pixel.reference);
-        images[2].push_back(pixel.surface ? heatColour(verdict.score.flip[i]) : glm::vec3{0.0f});
+        images[2].push_back(pixel.surface ? heatColor(verdict.score.flip[i]) : glm::vec3{0.0f});
         images[3].push_back(pixel.surface ? kTierColors[static_cast<std::size_t>(pixel.tier)]
                                           : glm::vec3{0.0f});
     }

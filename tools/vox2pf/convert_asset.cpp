@@ -161,9 +161,10 @@ void guardResult(const AssetTask& task, AssetResult& result, const std::function
         auto status = work();
         if (!status) failWith(task, std::move(status).error(), result);
     } catch (const std::bad_alloc&) {
-        failWith(task,
-                 {.code = ErrorCode::LimitExceeded, .message = "not enough memory; fewer threads (-j) may help"},
-                 result);
+        failWith(
+            task,
+            {.code = ErrorCode::LimitExceeded, .message = "not enough memory; fewer threads (-j) may help"},
+            result);
     } catch (const std::exception& exception) {
         failWith(task, {.code = ErrorCode::Internal, .message = exception.what()}, result);
     }

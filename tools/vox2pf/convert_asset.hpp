@@ -48,7 +48,7 @@ struct AssetTask {
     std::filesystem::path source;
     std::filesystem::path output;
     ConvertSettings settings;
-    bool isScene = false;  ///< a scene.toml: carryScene() instead of convertAsset()
+    bool isScene = false;             ///< a scene.toml: carryScene() instead of convertAsset()
     std::optional<Error> fault = {};  ///< what is wrong with the input already
 };
 
@@ -73,8 +73,8 @@ struct AssetResultAndOutput {
         output;  ///< written, for finishAsset; not set when there is nothing to put in place
 };
 
-/// Everything but the wait for the disk. Never throws; whatever goes wrong is in the result. May be called from several
-/// threads for different outputs.
+/// Everything but the wait for the disk. Never throws; whatever goes wrong is in the result. May be called
+/// from several threads for different outputs.
 AssetResultAndOutput beginAsset(const AssetTask& task, const ConvertPolicy& policy, const Limits& limits);
 
 /// Puts the output in its place.

@@ -161,7 +161,8 @@ InputQuery inputQuery(const ConvertOptions& options) {
     return query;
 }
 
-/// --base-dir: files that were named one by one keep their place below that folder. Gives what is wrong, if anything.
+/// --base-dir: files that were named one by one keep their place below that folder. Gives what is wrong, if
+/// anything.
 std::string placeBelow(const std::filesystem::path& baseDir, std::vector<InputFile>& inputs) {
     // Links are not followed: an asset that is a link has the place of the link.
     const auto named = [](const std::filesystem::path& path) {

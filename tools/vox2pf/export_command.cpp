@@ -30,11 +30,15 @@ struct Target {
 };
 
 HelpText helpText() {
-    return {.summary = "Writes PF_VOX files back as MagicaVoxel or OpenVDB files, for round trips and for editing.",
-            .usage = {"vox2pf export [options] <file.pf_vox | folder | @list | ->... -o <file.vox | file.vdb | folder>"},
-            .examples = {{"vox2pf export hall.pf_vox -o hall.vox", "one file"},
-                         {"vox2pf export hall.pf_vox -o hall.vdb", "as OpenVDB grids: density, Cd and material"},
-                         {"vox2pf export build/assets --format vdb -o back", "every PF_VOX file of a folder, into one folder"}}};
+    return {
+        .summary =
+            "Writes PF_VOX files back as MagicaVoxel or OpenVDB files, for round trips and for editing.",
+        .usage = {"vox2pf export [options] <file.pf_vox | folder | @list | ->... -o <file.vox | file.vdb | "
+                  "folder>"},
+        .examples = {{"vox2pf export hall.pf_vox -o hall.vox", "one file"},
+                     {"vox2pf export hall.pf_vox -o hall.vdb", "as OpenVDB grids: density, Cd and material"},
+                     {"vox2pf export build/assets --format vdb -o back",
+                      "every PF_VOX file of a folder, into one folder"}}};
 }
 
 /// Whether a path that is to be a folder was rather meant as a file of a kind that nobody writes.
@@ -47,21 +51,22 @@ bool looksLikeOtherFile(const ExportOptions& options) {
     return oneFile && output.has_filename() && output.has_extension();
 }
 
-/// A name that ends in .vox or .vdb is the file itself, anything else a folder for files of the sources' names.
-/// What is wrong, when name and format contradict each other.
+/// A name that ends in .vox or .vdb is the file itself, anything else a folder for files of the sources'
+/// names. What is wrong, when name and format contradict each other.
 tl::expected<Target, std::string> targetOf(const ExportOptions& options) {
     Target target{.output = options.output, .format = options.format};
     const std::string extension = target.output.extension().string();
     target.isFile = extension == ".vox" || extension == ".vdb";
     if (!target.isFile && looksLikeOtherFile(options)) {
         return tl::make_unexpected(fmt::format(
-            "-o {0} is neither a .vox or .vdb file nor a folder: name one of these, or write {0}/", options.output));
+            "-o {0} is neither a .vox or .vdb file nor a folder: name one of these, or write {0}/",
+            options.output));
     }
     const std::string named = target.isFile ? extension.substr(1) : kVox;
     if (target.format.empty()) target.format = named;
     if (target.isFile && target.format != named) {
-        return tl::make_unexpected(
-            fmt::format("--format {} contradicts the name of the output, {}", options.format, options.output));
+        return tl::make_unexpected(fmt::format("--format {} contradicts the name of the output, {}",
+                                               options.format, options.output));
     }
     return target;
 }
@@ -71,10 +76,11 @@ std::filesystem::path outputFor(const std::filesystem::path& source, const Targe
     return (target.output / source.filename()).replace_extension(target.format);
 }
 
-Result<std::uint64_t> exportFile(const std::filesystem::path& source, const Target& target, const Limits& limits,
-                                 Diagnostics& diagnostics) {
+Result<std::uint64_t> exportFile(const std::filesystem::path& source, const Target& target,
+                                 const Limits& limits, Diagnostics& diagnostics) {
     PFVOX_TRY(const OctreeAsset, asset, loadPfVox(source, limits, diagnostics));
-    auto bytes = target.format == kVdb ? exportVdb(asset, limits, diagnostics) : exportVox(asset, diagnostics);
+    auto bytes =
+        target.format == kVdb ? exportVdb(asset, limits, diagnostics) : exportVox(asset, diagnostics);
     if (!bytes) {
         bytes.error().file = source;
         return tl::make_unexpected(std::move(bytes).error());
@@ -110,12 +116,12 @@ Command makeExportCommand(CLI::App& tool) {
             DiagnosticList diagnostics;
             auto bytes = written.insert(output).second
                              ? exportFile(file, *target, limits, diagnostics)
-                             : Result<std::uint64_t>(tl::make_unexpected(
-                                   Error{.code = ErrorCode::FileNotWritable,
-                                         .message = fmt::format("{} was just written from another input; export "
-                                                                "it to another folder",
-                                                                output.string()),
-                                         .file = file}));
+                             : Result<std::uint64_t>(tl::make_unexpected(Error{
+                                   .code = ErrorCode::FileNotWritable,
+                                   .message = fmt::format("{} was just written from another input; export "
+                                                          "it to another folder",
+                                                          output.string()),
+                                   .file = file}));
             reporter.diagnostics(file, diagnostics.entries());
             if (!bytes) {
                 reporter.error(withRemedy(bytes.error()));

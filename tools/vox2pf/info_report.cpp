@@ -97,7 +97,8 @@ std::string materialTable(const FileInfo& info) {
         ++group.materials;
         group.voxels += info.total.voxelsOfMaterial[i];
     }
-    Table table({{"type"}, {"materials", Align::Right}, {"voxels", Align::Right}, {"share", Align::Right}});
+    Table table(
+        {{"type"}, {"materials", Align::Right}, {"voxels", Align::Right}, {"fraction", Align::Right}});
     for (const auto& [type, group] : groups) {
         table.addRow({toString(type), formatCount(group.materials), formatCount(group.voxels),
                       ratio(group.voxels * 100, info.total.voxels, "{:.2f} %")});

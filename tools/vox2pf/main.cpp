@@ -35,10 +35,11 @@ HelpText helpText() {
                      {"vox2pf assets -o build/assets", "convert a folder, keeping its tree"},
                      {"vox2pf info hall.pf_vox", "what is in it"}},
         .defaultCommand = "convert",
-        .details = {"Results go to stdout, messages to stderr. An output appears complete or not at all: a failure, "
-                    "Ctrl-C or a termination signal leaves the previous one.",
-                    "What is up to date by its content is left alone; time stamps are never read. The same input "
-                    "gives the same bytes for any number of threads."}};
+        .details = {
+            "Results go to stdout, messages to stderr. An output appears complete or not at all: a failure, "
+            "Ctrl-C or a termination signal leaves the previous one.",
+            "What is up to date by its content is left alone; time stamps are never read. The same input "
+            "gives the same bytes for any number of threads."}};
 }
 
 ExitCode run(int argc, char** argv) {

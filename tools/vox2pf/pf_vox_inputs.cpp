@@ -13,7 +13,8 @@ ExitCode visitPfVoxFiles(const CLI::App& command, const ReadOptions& options, co
 Error withRemedy(Error error) {
     if (error.code != ErrorCode::BadMagic) return error;
     if (error.file.extension() == kPfVoxExtension) {
-        error.message += ". One of the thesis program? Those are converted: vox2pf " + error.file.string() + " -o converted/";
+        error.message += ". One of the thesis program? Those are converted: vox2pf " + error.file.string() +
+                         " -o converted/";
     } else if (error.file.extension() == ".pf_probe") {
         error.message += ". Probe files are read by probe-bake: probe-bake info " + error.file.string();
     } else if (looksLikeSource(error.file)) {

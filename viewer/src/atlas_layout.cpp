@@ -25,8 +25,12 @@ AtlasLayout atlasLayout(const PictureSettings& settings, std::uint32_t probes) {
     const std::uint32_t shortEdge = std::min(width, height);
     if (probes == 0) return {.cell = shortEdge};
     if (settings.atlas.probe >= 0)
-        return {.first = std::min(static_cast<std::uint32_t>(settings.atlas.probe), probes - 1), .count = 1, .cell = shortEdge};
-    const auto fits = [&](std::uint32_t cell) { return std::uint64_t{width / cell} * (height / cell) >= probes; };
+        return {.first = std::min(static_cast<std::uint32_t>(settings.atlas.probe), probes - 1),
+                .count = 1,
+                .cell = shortEdge};
+    const auto fits = [&](std::uint32_t cell) {
+        return std::uint64_t{width / cell} * (height / cell) >= probes;
+    };
     const std::uint32_t least = std::min(kSmallestCell, shortEdge);
     std::uint32_t cell = shortEdge;
     while (cell > least && !fits(cell)) --cell;

@@ -24,8 +24,9 @@ struct AtlasLayout {
     std::optional<glm::uvec2> cornerOf(std::uint32_t probe) const;
 };
 
-/// The largest squares with which all `probes` fit, but none narrower than 32 pixels: then there are pages. Behind the last
-/// page comes none: that is the last one again. One probe that is asked for fills the picture.
+/// The largest squares with which all `probes` fit, but none narrower than 32 pixels: then there are pages.
+/// Behind the last page comes none: that is the last one again. One probe that is asked for fills the
+/// picture.
 AtlasLayout atlasLayout(const PictureSettings& settings, std::uint32_t probes);
 
 }  // namespace pfvox::viewer

@@ -4,8 +4,8 @@
 
 namespace pfvox::viewer {
 
-Result<std::optional<ViewCamera>> chosenCamera(const CameraRequest& request, const std::filesystem::path& file,
-                                               const Scene& scene) {
+Result<std::optional<ViewCamera>> chosenCamera(const CameraRequest& request,
+                                               const std::filesystem::path& file, const Scene& scene) {
     if (request.camera) return request.camera;
     if (request.name.empty()) {
         const bool isScene = file.extension() == ".toml";

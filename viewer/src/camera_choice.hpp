@@ -17,7 +17,7 @@ struct CameraRequest {
 
 /// The camera that was asked for; a scene's first one when nothing was; nothing = frame everything. Errors:
 /// BadReference (no camera of that name; the message lists those that are there).
-Result<std::optional<ViewCamera>> chosenCamera(const CameraRequest& request, const std::filesystem::path& file,
-                                               const Scene& scene);
+Result<std::optional<ViewCamera>> chosenCamera(const CameraRequest& request,
+                                               const std::filesystem::path& file, const Scene& scene);
 
 }  // namespace pfvox::viewer

@@ -26,7 +26,8 @@ void CameraController::frame(const gpu::WorldBox& box, double aspect) {
 
 void CameraController::lookAlong(double yaw, double pitch) {
     const double distance = glm::length(camera_.target - camera_.position);
-    const glm::dvec3 forward(std::cos(pitch) * std::sin(yaw), std::sin(pitch), -std::cos(pitch) * std::cos(yaw));
+    const glm::dvec3 forward(std::cos(pitch) * std::sin(yaw), std::sin(pitch),
+                             -std::cos(pitch) * std::cos(yaw));
     if (mode == CameraMode::Orbit) {
         camera_.position = camera_.target - distance * forward;
     } else {
@@ -38,8 +39,8 @@ void CameraController::turn(glm::dvec2 parts) {
     const glm::dvec3 forward = frameOf(camera_).forward;
     const double pitch = std::asin(std::clamp(forward.y, -1.0, 1.0));
     const double yaw = std::atan2(forward.x, -forward.z);
-    // Orbiting, the scene follows the cursor, so the camera goes the other way; flying, the look follows it. Both are
-    // the same turn.
+    // Orbiting, the scene follows the cursor, so the camera goes the other way; flying, the look follows it.
+    // Both are the same turn.
     const glm::dvec2 angles = kRadiansPerHeight * parts;
     lookAlong(yaw + angles.x, std::clamp(pitch - angles.y, -kSteepest, kSteepest));
 }
@@ -67,7 +68,8 @@ void CameraController::wheel(double notches) {
 void CameraController::move(glm::dvec3 direction, double seconds, bool fast) {
     if (glm::length(direction) == 0.0) return;
     const CameraFrame frame = frameOf(camera_);
-    const glm::dvec3 along = direction.x * frame.right + glm::dvec3(0.0, direction.y, 0.0) + direction.z * frame.forward;
+    const glm::dvec3 along =
+        direction.x * frame.right + glm::dvec3(0.0, direction.y, 0.0) + direction.z * frame.forward;
     if (glm::length(along) == 0.0) return;
     const glm::dvec3 shift = speed * (fast ? kFasterFactor : 1.0) * seconds * glm::normalize(along);
     camera_.position += shift;

@@ -46,7 +46,8 @@ Result<ViewCamera> cameraOf(const Json& json, std::size_t index) {
 }
 
 /// Catmull-Rom: through b at 0 and c at 1.
-glm::dvec3 spline(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::dvec3& d, double t) {
+glm::dvec3 spline(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::dvec3& d,
+                  double t) {
     const glm::dvec3 linear = c - a;
     const glm::dvec3 square = 2.0 * a - 5.0 * b + 4.0 * c - d;
     const glm::dvec3 cube = 3.0 * (b - c) + d - a;

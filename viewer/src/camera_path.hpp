@@ -13,12 +13,12 @@ namespace pfvox::viewer {
 
 class CameraPath {
   public:
-    /// `fovYDegrees` may be left out: 40. Errors: BadStructure (not JSON, no cameras), BadValue (not three finite
-    /// numbers, position and target the same, a field of view not within 1 to 170).
+    /// `fovYDegrees` may be left out: 40. Errors: BadStructure (not JSON, no cameras), BadValue (not three
+    /// finite numbers, position and target the same, a field of view not within 1 to 170).
     static Result<CameraPath> parse(std::string_view text);
 
-    /// 0 = the first camera, 1 = the last; each pair of neighbours takes the same time. Through all cameras, without
-    /// corners (Catmull-Rom splines of position and target).
+    /// 0 = the first camera, 1 = the last; each pair of neighbors takes the same time. Through all cameras,
+    /// without corners (Catmull-Rom splines of position and target).
     ViewCamera at(double part) const;
     /// Of picture `index` of `count`: the first is that of at(0), the last that of at(1).
     ViewCamera atFrame(std::uint32_t index, std::uint32_t count) const;

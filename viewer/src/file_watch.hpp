@@ -8,14 +8,14 @@
 
 namespace pfvox::viewer {
 
-/// Looks at size and time of the files whenever poll() is called; a few calls a second are enough. Folders, network
-/// drives and files that are replaced by renaming are all the same to it.
+/// Looks at size and time of the files whenever poll() is called; a few calls a second are enough. Folders,
+/// network drives and files that are replaced by renaming are all the same to it.
 class FileWatch {
   public:
     /// Forgets what was watched before. Their present state is the one that changes are counted from.
     void watch(const std::vector<std::filesystem::path>& files);
-    /// True once for each change, at the first call that finds all files as the call before did: a file that is still
-    /// being written does not count yet.
+    /// True once for each change, at the first call that finds all files as the call before did: a file that
+    /// is still being written does not count yet.
     bool poll();
 
   private:

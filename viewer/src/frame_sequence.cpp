@@ -14,32 +14,35 @@ constexpr std::uint32_t kMovingFrames = 12;  // of which a moving picture is the
 }  // namespace
 
 Result<FrameSequence> FrameSequence::create(gpu::Device& device) {
-    PFVOX_TRY(gpu::Program, resolve,
-              device.createProgram(shaders::kViewResolve, sizeof(shared::ResolvePushConstants), "view resolve"));
+    PFVOX_TRY(
+        gpu::Program, resolve,
+        device.createProgram(shaders::kViewResolve, sizeof(shared::ResolvePushConstants), "view resolve"));
     return FrameSequence(std::move(resolve));
 }
 
 Result<void> FrameSequence::ensureBuffers(gpu::Device& device, std::uint64_t pixelCount) {
     if (buffers_ && buffers_->pixelCount == pixelCount) return {};
     buffers_.reset();  // before the new ones take memory
-    const std::uint64_t colourBytes = sizeof(glm::vec4) * pixelCount;
-    PFVOX_TRY(gpu::Buffer, view, device.createBuffer(kMaxTogether * sizeof(shared::ViewParameters), "view parameters"));
+    const std::uint64_t colorBytes = sizeof(glm::vec4) * pixelCount;
+    PFVOX_TRY(gpu::Buffer, view,
+              device.createBuffer(kMaxTogether * sizeof(shared::ViewParameters), "view parameters"));
     PFVOX_TRY(gpu::Buffer, resolve,
               device.createBuffer(kMaxTogether * sizeof(shared::ResolveParameters), "resolve parameters"));
     PFVOX_TRY(gpu::Buffer, counters, device.createBuffer(sizeof(ViewCounts), "view counters"));
     PFVOX_TRY(gpu::Buffer, pixels, device.createBuffer(4 * pixelCount, "view pixels"));
-    PFVOX_TRY(gpu::Buffer, frame, device.createBuffer(colourBytes, "frame"));
-    PFVOX_TRY(gpu::Buffer, lastFrame, device.createBuffer(colourBytes, "last frame"));
-    PFVOX_TRY(gpu::Buffer, history, device.createBuffer(colourBytes, "history"));
-    PFVOX_TRY(gpu::Buffer, lastHistory, device.createBuffer(colourBytes, "last history"));
+    PFVOX_TRY(gpu::Buffer, frame, device.createBuffer(colorBytes, "frame"));
+    PFVOX_TRY(gpu::Buffer, lastFrame, device.createBuffer(colorBytes, "last frame"));
+    PFVOX_TRY(gpu::Buffer, history, device.createBuffer(colorBytes, "history"));
+    PFVOX_TRY(gpu::Buffer, lastHistory, device.createBuffer(colorBytes, "last history"));
     buffers_.emplace(Buffers{std::move(view), std::move(resolve), std::move(counters), std::move(pixels),
-                             std::move(frame), std::move(lastFrame), std::move(history), std::move(lastHistory),
-                             SeenBuffers{}, pixelCount});
+                             std::move(frame), std::move(lastFrame), std::move(history),
+                             std::move(lastHistory), SeenBuffers{}, pixelCount});
     return {};
 }
 
-Result<void> FrameSequence::uploadParameters(gpu::Device& device, const PictureInput& input, const ViewCamera& camera,
-                                             const PictureSettings& settings, std::uint32_t slot) const {
+Result<void> FrameSequence::uploadParameters(gpu::Device& device, const PictureInput& input,
+                                             const ViewCamera& camera, const PictureSettings& settings,
+                                             std::uint32_t slot) const {
     shared::ViewParameters view = viewParametersOf(camera, settings, input);
     view.firstSample = (last_ ? last_->index : 0) * settings.samplesPerPixel;
     const shared::ViewParameters before = last_ ? viewParametersOf(last_->camera, settings, input) : view;
@@ -63,19 +66,20 @@ Result<void> FrameSequence::uploadParameters(gpu::Device& device, const PictureI
     return device.upload(buffers_->resolveParameters, slot * sizeof resolve, gpu::bytesOf(resolve));
 }
 
-Result<void> FrameSequence::addFrame(gpu::Device& device, const PictureInput& input, const PictureSettings& settings,
-                                     std::uint32_t slot, PassList& list) {
+Result<void> FrameSequence::addFrame(gpu::Device& device, const PictureInput& input,
+                                     const PictureSettings& settings, std::uint32_t slot, PassList& list) {
     std::swap(buffers_->frame, buffers_->lastFrame);
     std::swap(buffers_->history, buffers_->lastHistory);
     const Buffers& b = *buffers_;
-    PFVOX_CHECK(passes_.add(device, input, settings,
-                            {.parameters = b.viewParameters.addressWords(slot * sizeof(shared::ViewParameters)),
-                             .colours = b.frame.addressWords(),
-                             .counters = b.counters.addressWords(),
-                             .buffers = &b.seen,
-                             .firstRow = 0,
-                             .rowCount = settings.height},
-                            list));
+    PFVOX_CHECK(
+        passes_.add(device, input, settings,
+                    {.parameters = b.viewParameters.addressWords(slot * sizeof(shared::ViewParameters)),
+                     .colors = b.frame.addressWords(),
+                     .counters = b.counters.addressWords(),
+                     .buffers = &b.seen,
+                     .firstRow = 0,
+                     .rowCount = settings.height},
+                    list));
     const shared::ResolvePushConstants push{
         .parameters = b.resolveParameters.addressWords(slot * sizeof(shared::ResolveParameters)),
         .frame = b.frame.addressWords(),
@@ -95,8 +99,9 @@ void FrameSequence::advance(const ViewCamera& camera, const PictureSettings& set
                  .index = last_ ? last_->index + 1 : 1};
 }
 
-Result<DrawnFrames> FrameSequence::drawMany(gpu::Device& device, const PictureInput& input, const ViewCamera& camera,
-                                            const PictureSettings& settings, std::uint32_t count) {
+Result<DrawnFrames> FrameSequence::drawMany(gpu::Device& device, const PictureInput& input,
+                                            const ViewCamera& camera, const PictureSettings& settings,
+                                            std::uint32_t count) {
     PFVOX_ASSERT(count >= 1 && count <= kMaxTogether);
     if (last_ && !(last_->settings == settings)) last_.reset();
     const std::uint64_t pixelCount = std::uint64_t{settings.width} * settings.height;
@@ -125,8 +130,8 @@ Result<DrawnFrames> FrameSequence::drawMany(gpu::Device& device, const PictureIn
     return drawn;
 }
 
-Result<PictureStatistics> FrameSequence::draw(gpu::Device& device, const PictureInput& input, const ViewCamera& camera,
-                                              const PictureSettings& settings) {
+Result<PictureStatistics> FrameSequence::draw(gpu::Device& device, const PictureInput& input,
+                                              const ViewCamera& camera, const PictureSettings& settings) {
     PFVOX_TRY(const DrawnFrames, drawn, drawMany(device, input, camera, settings, 1));
     return drawn.statistics;
 }

@@ -1,9 +1,9 @@
 // FrameSequence: frames that follow one another become one picture (temporal anti-aliasing).
 //
-//     ViewPasses -> colour and distance -> view_resolve.comp (with the history) -> pixels
+//     ViewPasses -> color and distance -> view_resolve.comp (with the history) -> pixels
 //
-// While camera, size and settings stay, the picture is the mean of all frames and gets ever smoother. When the camera
-// moves the history moves along; when anything else changes, it starts anew.
+// While camera, size and settings stay, the picture is the mean of all frames and gets ever smoother. When
+// the camera moves the history moves along; when anything else changes, it starts anew.
 #pragma once
 
 #include <optional>
@@ -16,8 +16,8 @@ namespace pfvox::viewer {
 
 /// Frames drawn together.
 struct DrawnFrames {
-    PictureStatistics statistics;   ///< of all of them
-    std::vector<PassTimes> times;   ///< of each
+    PictureStatistics statistics;  ///< of all of them
+    std::vector<PassTimes> times;  ///< of each
 };
 
 class FrameSequence {
@@ -41,7 +41,9 @@ class FrameSequence {
     std::uint32_t frames() const { return last_ ? last_->still : 0; }
     /// One RGBA8 word each, rows from the top; null before the first frame.
     const gpu::Buffer* pixels() const { return buffers_ ? &buffers_->pixels : nullptr; }
-    glm::uvec2 size() const { return last_ ? glm::uvec2(last_->settings.width, last_->settings.height) : glm::uvec2(0); }
+    glm::uvec2 size() const {
+        return last_ ? glm::uvec2(last_->settings.width, last_->settings.height) : glm::uvec2(0);
+    }
     /// The picture so far, on the CPU. Only after a frame was drawn. Errors: GpuOutOfMemory, GpuLost.
     Result<Picture> picture(gpu::Device& device) const;
 
@@ -49,7 +51,7 @@ class FrameSequence {
     struct Buffers {
         gpu::Buffer viewParameters, resolveParameters;  ///< kMaxTogether of each
         gpu::Buffer counters, pixels;
-        gpu::Buffer frame, lastFrame;      ///< colour and distance
+        gpu::Buffer frame, lastFrame;      ///< color and distance
         gpu::Buffer history, lastHistory;  ///< mean and number of frames
         SeenBuffers seen;
         std::uint64_t pixelCount = 0;

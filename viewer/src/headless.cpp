@@ -34,13 +34,13 @@ Result<void> writeStatistics(const std::string& target, const std::string& json)
 }
 
 void reportFindings(const RunReport& run, const gpu::Device& device, Diagnostics& diagnostics) {
-    if (run.picture.cappedRays != 0) {
-        diagnostics.warn("view-capped-rays",
-                         fmt::format("{} rays were given up after too many steps", run.picture.cappedRays));
+    if (run.picture.stepLimitRays != 0) {
+        diagnostics.warn("view-step-limit", fmt::format("{} rays were given up after too many steps",
+                                                        run.picture.stepLimitRays));
     }
     if (run.picture.withoutValue != 0) {
-        diagnostics.warn("view-no-indirect",
-                         fmt::format("{} samples have no indirect light in the probes", run.picture.withoutValue));
+        diagnostics.warn("view-no-indirect", fmt::format("{} samples have no indirect light in the probes",
+                                                         run.picture.withoutValue));
     }
     for (const std::string& message : device.validationMessages())
         diagnostics.warn("vulkan-validation", message);
@@ -65,12 +65,14 @@ Result<void> drawFrames(const Stage& stage, FrameSequence& frames, std::uint32_t
     const Clock::time_point started = Clock::now();
     while (run.frames.size() < count) {
         const auto left = static_cast<std::uint32_t>(count - run.frames.size());
-        PFVOX_TRY(const DrawnFrames, drawn,
-                  frames.drawMany(stage.device, stage.input, run.camera, run.settings, std::min(together, left)));
+        PFVOX_TRY(
+            const DrawnFrames, drawn,
+            frames.drawMany(stage.device, stage.input, run.camera, run.settings, std::min(together, left)));
         run.picture += drawn.statistics;
         run.frames.insert(run.frames.end(), drawn.times.begin(), drawn.times.end());
         const double frameMs = std::max(msSince(started) / static_cast<double>(run.frames.size()), 1e-3);
-        together = static_cast<std::uint32_t>(std::clamp(kPieceMs / frameMs, 1.0, 1.0 * FrameSequence::kMaxTogether));
+        together = static_cast<std::uint32_t>(
+            std::clamp(kPieceMs / frameMs, 1.0, 1.0 * FrameSequence::kMaxTogether));
     }
     run.wallMs = msSince(started);
     return {};
@@ -100,7 +102,8 @@ Result<void> measure(const Stage& stage, RunReport& run) {
 
 /// "flight.png" -> "flight-0001.png" and so on.
 std::filesystem::path numbered(const std::filesystem::path& file, std::uint32_t number) {
-    const std::string name = fmt::format("{}-{:04}{}", file.stem().string(), number, file.extension().string());
+    const std::string name =
+        fmt::format("{}-{:04}{}", file.stem().string(), number, file.extension().string());
     return file.parent_path() / name;
 }
 
@@ -154,13 +157,14 @@ Result<void> checkAtlas(const PictureSettings& settings, const ShownProbes* prob
     if (probes == nullptr) return {};
     const auto count = static_cast<std::uint32_t>(probes->probes.size());
     if (settings.atlas.probe >= static_cast<std::int64_t>(count)) {
-        return fail(ErrorCode::BadReference,
-                    fmt::format("--probe {}: the field has {} probes, from 0 on", settings.atlas.probe, count));
+        return fail(ErrorCode::BadReference, fmt::format("--probe {}: the field has {} probes, from 0 on",
+                                                         settings.atlas.probe, count));
     }
     const std::uint32_t pages = atlasLayout(settings, count).pages;
     if (!isAtlas(settings.mode) || settings.atlas.page < pages) return {};
-    return fail(ErrorCode::BadReference, fmt::format("--probe-page {}: the {} probes are on {} at this size, from 0 on",
-                                                     settings.atlas.page, count, tools::plural(pages, "page")));
+    return fail(ErrorCode::BadReference,
+                fmt::format("--probe-page {}: the {} probes are on {} at this size, from 0 on",
+                            settings.atlas.page, count, tools::plural(pages, "page")));
 }
 
 /// As many rays for each pixel of a picture, however many samples and frames it is made of.

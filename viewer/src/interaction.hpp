@@ -13,7 +13,8 @@ namespace pfvox::viewer {
 
 enum class MouseButton : std::uint8_t { Left, Right, Middle };
 
-/// Something that the left button holds, from where it went down; points as parts of the window from its upper left.
+/// Something that the left button holds, from where it went down; points as parts of the window from its
+/// upper left.
 struct Drag {
     glm::dvec2 to{0.0};
     bool ended = false;
@@ -23,7 +24,8 @@ class Interaction {
   public:
     explicit Interaction(CameraController& camera) : camera_(&camera) {}
 
-    /// Whether a press of the left button there takes hold of something; the drag then moves that, not the camera.
+    /// Whether a press of the left button there takes hold of something; the drag then moves that, not the
+    /// camera.
     std::function<bool(glm::dvec2 parts)> grabs = [](glm::dvec2) { return false; };
 
     /// Of the window, in the unit of cursor positions.

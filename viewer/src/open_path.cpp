@@ -39,8 +39,8 @@ bool isScene(const fs::path& file) {
 Result<OpenPath> openPath(const fs::path& path) {
     std::error_code error;
     if (!fs::exists(path, error)) {
-        return tl::make_unexpected(
-            Error{.code = ErrorCode::FileNotFound, .message = "there is no such file or folder", .file = path});
+        return tl::make_unexpected(Error{
+            .code = ErrorCode::FileNotFound, .message = "there is no such file or folder", .file = path});
     }
     if (path.extension() == ".pf_probe") {
         PFVOX_TRY(const fs::path, scene, sceneBeside(path));
@@ -52,15 +52,16 @@ Result<OpenPath> openPath(const fs::path& path) {
     PFVOX_TRY(const std::vector<fs::path>, models, filesWith(path, ".pf_vox"));
     files.insert(files.end(), models.begin(), models.end());
     if (files.empty()) {
-        return tl::make_unexpected(Error{.code = ErrorCode::NothingToConvert,
-                                         .message = "the folder holds neither a scene nor a .pf_vox file; make some: "
-                                                    "vox2pf <sources> -o <this folder>",
-                                         .file = path});
+        return tl::make_unexpected(
+            Error{.code = ErrorCode::NothingToConvert,
+                  .message = "the folder holds neither a scene nor a .pf_vox file; make some: "
+                             "vox2pf <sources> -o <this folder>",
+                  .file = path});
     }
     return OpenPath{.file = files.front(), .siblings = files};
 }
 
-fs::path neighbourOf(const OpenPath& open, int step) {
+fs::path neighborOf(const OpenPath& open, int step) {
     const auto count = static_cast<int>(open.siblings.size());
     if (count == 0) return open.file;
     const auto found = std::ranges::find(open.siblings, open.file);

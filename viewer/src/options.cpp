@@ -24,20 +24,24 @@ constexpr std::uint32_t kSamplesWithoutScreenshot = 1;
 
 tools::HelpText helpText() {
     using tools::ExitCode;
-    return {.summary = "pfview shows a .pf_vox file or a scene of such files, in a window or as a picture.",
-            .usage = {"pfview [options] [file.pf_vox | scene.toml | file.pf_probe | folder]"},
-            .examples = {{"pfview hall.pf_vox", "a window"},
-                         {"pfview scene.toml --camera court", "at a camera of the scene"},
-                         {"pfview hall.pf_vox --screenshot hall.png", "a picture"},
-                         {"pfview hall.pf_vox --screenshot hall.png --size 640x480 --view normals", "of something else"},
-                         {"pfview scene.toml --screenshot court.png --camera court --frames 16", "with less noise"},
-                         {"pfview scene.toml --screenshot flight.png --camera-path flight.json --frames 120", "a flight"},
-                         {"pfview hall.pf_vox --screenshot hall.png --camera 4,3,8,0,1,0,50 --stats-json -", "with figures"},
-                         {"pfview scene.toml --probes scene.pf_probe --view tiers --screenshot tiers.png", "where light comes from"},
-                         {"pfview scene.toml --size 1920x1080 --frames 1000 --stats-json -", "figures of frames alone"}},
-            .details = {"With --screenshot no window system is needed."},
-            .exitCodes = {ExitCode::Ok, ExitCode::Usage, ExitCode::CannotReadOrWrite, ExitCode::InvalidInput,
-                          ExitCode::Unsupported, ExitCode::Gpu, ExitCode::Internal}};
+    return {
+        .summary = "pfview shows a .pf_vox file or a scene of such files, in a window or as a picture.",
+        .usage = {"pfview [options] [file.pf_vox | scene.toml | file.pf_probe | folder]"},
+        .examples =
+            {{"pfview hall.pf_vox", "a window"},
+             {"pfview scene.toml --camera court", "at a camera of the scene"},
+             {"pfview hall.pf_vox --screenshot hall.png", "a picture"},
+             {"pfview hall.pf_vox --screenshot hall.png --size 640x480 --view normals", "of something else"},
+             {"pfview scene.toml --screenshot court.png --camera court --frames 16", "with less noise"},
+             {"pfview scene.toml --screenshot flight.png --camera-path flight.json --frames 120", "a flight"},
+             {"pfview hall.pf_vox --screenshot hall.png --camera 4,3,8,0,1,0,50 --stats-json -",
+              "with figures"},
+             {"pfview scene.toml --probes scene.pf_probe --view tiers --screenshot tiers.png",
+              "where light comes from"},
+             {"pfview scene.toml --size 1920x1080 --frames 1000 --stats-json -", "figures of frames alone"}},
+        .details = {"With --screenshot no window system is needed."},
+        .exitCodes = {ExitCode::Ok, ExitCode::Usage, ExitCode::CannotReadOrWrite, ExitCode::InvalidInput,
+                      ExitCode::Unsupported, ExitCode::Gpu, ExitCode::Internal}};
 }
 
 template <class Entries>
@@ -114,8 +118,8 @@ std::string namesOf(const Entries& entries) {
 template <class Entries>
 std::string noSuch(std::string_view kind, const std::string& word, const Entries& entries) {
     const auto nearest = tools::nearestWord(word, wordsOf(entries));
-    return fmt::format("there is no {} '{}'; {}there is {}", kind, word, nearest ? "did you mean " + *nearest + "? " : "",
-                       namesOf(entries));
+    return fmt::format("there is no {} '{}'; {}there is {}", kind, word,
+                       nearest ? "did you mean " + *nearest + "? " : "", namesOf(entries));
 }
 
 /// A picture in another format under this name would not be what it says.
@@ -123,7 +127,8 @@ void checkPngName(const std::string& option, const std::filesystem::path& file) 
     std::string extension = file.extension().string();
     std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return std::tolower(c); });
     if (extension != ".png")
-        throw CLI::ValidationError(option, fmt::format("'{}' does not end in .png, and PNG is all that is written", file.string()));
+        throw CLI::ValidationError(
+            option, fmt::format("'{}' does not end in .png, and PNG is all that is written", file.string()));
 }
 
 void declareLight(CLI::App& app, Options& options, RawOptions& raw) {
@@ -149,10 +154,14 @@ void declareLight(CLI::App& app, Options& options, RawOptions& raw) {
         ->check(tools::showDefault(
             fmt::format("{}, of a window what it was last", toString(options.picture.toneMap))))
         ->check(tools::suggestWords(wordsOf(toneMaps())));
-    light->add_option("--probe", options.picture.atlas.probe, "Views of the atlas: this probe alone, by its index")
+    light
+        ->add_option("--probe", options.picture.atlas.probe,
+                     "Views of the atlas: this probe alone, by its index")
         ->check(CLI::Range(0, 1 << 30))
         ->type_name("N");
-    light->add_option("--probe-page", options.picture.atlas.page, "Views of the atlas: this page of probes, from 0")
+    light
+        ->add_option("--probe-page", options.picture.atlas.page,
+                     "Views of the atlas: this page of probes, from 0")
         ->check(CLI::Range(0u, 1u << 30))
         ->type_name("N");
 }
@@ -164,7 +173,9 @@ void declare(CLI::App& app, Options& options, RawOptions& raw) {
         ->check(tools::suggestFiles({".pf_vox", ".toml", ".pf_probe"}));
 
     CLI::Option_group* const picture = app.add_option_group("Picture");
-    picture->add_option("--screenshot", options.screenshot, "Write a PNG and exit instead of opening a window; needs no window system")
+    picture
+        ->add_option("--screenshot", options.screenshot,
+                     "Write a PNG and exit instead of opening a window; needs no window system")
         ->type_name("PNG")
         ->check(tools::suggestFiles({".png"}));
     picture->add_option("--size", raw.size, "Pixels")
@@ -221,8 +232,9 @@ void declare(CLI::App& app, Options& options, RawOptions& raw) {
 
     CLI::Option_group* const output = app.add_option_group("Output");
     output
-        ->add_option("--stats-json", options.statisticsFile,
-                     "Write statistics as JSON; - is stdout. Without --screenshot no picture is made: for measuring")
+        ->add_option(
+            "--stats-json", options.statisticsFile,
+            "Write statistics as JSON; - is stdout. Without --screenshot no picture is made: for measuring")
         ->type_name("FILE")
         ->check(tools::suggestFiles({".json"}));
     output->add_flag("-q,--quiet", options.quiet, "No messages but errors");
@@ -244,7 +256,8 @@ void understand(const RawOptions& raw, Options& options) {
     if (raw.exposure->count() != 0) options.exposureStops = raw.exposureStops;
     if (!raw.toneMap.empty()) {
         options.toneMap = toneMapFrom(raw.toneMap);
-        if (!options.toneMap) throw CLI::ValidationError("--tonemap", noSuch("tone map", raw.toneMap, toneMaps()));
+        if (!options.toneMap)
+            throw CLI::ValidationError("--tonemap", noSuch("tone map", raw.toneMap, toneMaps()));
     }
     options.picture.toneMap = options.toneMap.value_or(PictureSettings{}.toneMap);
     if (options.screenshot.empty() && raw.samples->count() == 0)
@@ -263,7 +276,8 @@ void understand(const RawOptions& raw, Options& options) {
 }  // namespace
 
 std::variant<Options, EarlyExit> parseOptions(int argc, const char* const* argv) {
-    const auto tool = tools::makeTool("pfview", helpText(), fmt::format("pfview {}\nreads PF_VOX 1.x, PF_PROBE 1.x", PFVOX_VERSION));
+    const auto tool = tools::makeTool(
+        "pfview", helpText(), fmt::format("pfview {}\nreads PF_VOX 1.x, PF_PROBE 1.x", PFVOX_VERSION));
     CLI::App& app = *tool;
     Options options;
     RawOptions raw;
@@ -277,7 +291,8 @@ std::variant<Options, EarlyExit> parseOptions(int argc, const char* const* argv)
         return EarlyExit{.exitCode = 0, .text = std::string(version.what()) + "\n"};
     } catch (const CLI::ParseError& error) {
         const std::string complaint = tools::complaintAboutUnknownOption(app, app).value_or(error.what());
-        return EarlyExit{.exitCode = kUsageError, .text = fmt::format("pfview: {}\nTry 'pfview --help'.\n", complaint)};
+        return EarlyExit{.exitCode = kUsageError,
+                         .text = fmt::format("pfview: {}\nTry 'pfview --help'.\n", complaint)};
     }
     return options;
 }

@@ -15,9 +15,9 @@ gpu::GpuRay rayThrough(const ViewCamera& camera, glm::dvec2 parts, double aspect
 
 struct Pick {
     std::size_t modelIndex = 0;  ///< in Scene::models
-    std::string model;     ///< name, else path, of the scene's model
-    std::string instance;  ///< its number within the file, and its name if it has one
-    std::string material;  ///< its number within the file, its name if it has one, and its type
+    std::string model;           ///< name, else path, of the scene's model
+    std::string instance;        ///< its number within the file, and its name if it has one
+    std::string material;        ///< its number within the file, its name if it has one, and its type
     glm::u8vec4 baseColor{0};
     glm::ivec3 voxel{0};
     double distanceMetres = 0.0;

@@ -29,7 +29,7 @@ PictureStatistics& PictureStatistics::operator+=(const PictureStatistics& other)
     cameraRays += other.cameraRays;
     steps += other.steps;
     hits += other.hits;
-    cappedRays += other.cappedRays;
+    stepLimitRays += other.stepLimitRays;
     sunRays += other.sunRays;
     ambientRays += other.ambientRays;
     reflectionRays += other.reflectionRays;
@@ -54,7 +54,7 @@ struct PictureRenderer::Band {
     const gpu::Buffer& parameters;
     const gpu::Buffer& resolveParameters;
     const gpu::Buffer& counters;
-    const gpu::Buffer& colours;
+    const gpu::Buffer& colors;
     const gpu::Buffer& pixels;
     std::uint32_t firstRow = 0;
     std::uint32_t rowCount = 0;
@@ -69,17 +69,19 @@ PictureRenderer& PictureRenderer::operator=(PictureRenderer&&) noexcept = defaul
 PictureRenderer::~PictureRenderer() = default;
 
 Result<PictureRenderer> PictureRenderer::create(gpu::Device& device) {
-    PFVOX_TRY(gpu::Program, resolve,
-              device.createProgram(shaders::kViewResolve, sizeof(shared::ResolvePushConstants), "view resolve"));
+    PFVOX_TRY(
+        gpu::Program, resolve,
+        device.createProgram(shaders::kViewResolve, sizeof(shared::ResolvePushConstants), "view resolve"));
     return PictureRenderer(std::move(resolve));
 }
 
-Result<void> PictureRenderer::drawBand(gpu::Device& device, const PictureInput& input, const PictureSettings& settings,
-                                       const Band& band, PictureStatistics& statistics) const {
+Result<void> PictureRenderer::drawBand(gpu::Device& device, const PictureInput& input,
+                                       const PictureSettings& settings, const Band& band,
+                                       PictureStatistics& statistics) const {
     PassList list;
     PFVOX_CHECK(passes_->add(device, input, settings,
                              {.parameters = band.parameters.addressWords(),
-                              .colours = band.colours.addressWords(),
+                              .colors = band.colors.addressWords(),
                               .counters = band.counters.addressWords(),
                               .buffers = seen_.get(),
                               .firstRow = band.firstRow,
@@ -90,7 +92,7 @@ Result<void> PictureRenderer::drawBand(gpu::Device& device, const PictureInput& 
     resolve.height = band.rowCount;
     PFVOX_CHECK(device.upload(band.resolveParameters, 0, gpu::bytesOf(resolve)));
     const shared::ResolvePushConstants push{.parameters = band.resolveParameters.addressWords(),
-                                            .frame = band.colours.addressWords(),
+                                            .frame = band.colors.addressWords(),
                                             .lastFrame = {0, 0},
                                             .history = {0, 0},
                                             .lastHistory = {0, 0},
@@ -104,18 +106,21 @@ Result<void> PictureRenderer::drawBand(gpu::Device& device, const PictureInput& 
     return {};
 }
 
-Result<Picture> PictureRenderer::render(gpu::Device& device, const PictureInput& input, const ViewCamera& camera,
-                                        const PictureSettings& settings, PictureStatistics& statistics) const {
+Result<Picture> PictureRenderer::render(gpu::Device& device, const PictureInput& input,
+                                        const ViewCamera& camera, const PictureSettings& settings,
+                                        PictureStatistics& statistics) const {
     Picture picture{.width = settings.width,
                     .height = settings.height,
                     .pixels = std::vector<std::uint32_t>(std::size_t{settings.width} * settings.height)};
     const auto bandRows = static_cast<std::uint32_t>(
         std::clamp<std::uint64_t>(kPixelsOfBand / settings.width, 1, settings.height));
     const std::uint64_t bandPixels = std::uint64_t{settings.width} * bandRows;
-    PFVOX_TRY(const gpu::Buffer, parameters, device.createBuffer(sizeof(shared::ViewParameters), "view parameters"));
-    PFVOX_TRY(const gpu::Buffer, resolve, device.createBuffer(sizeof(shared::ResolveParameters), "resolve parameters"));
+    PFVOX_TRY(const gpu::Buffer, parameters,
+              device.createBuffer(sizeof(shared::ViewParameters), "view parameters"));
+    PFVOX_TRY(const gpu::Buffer, resolve,
+              device.createBuffer(sizeof(shared::ResolveParameters), "resolve parameters"));
     PFVOX_TRY(const gpu::Buffer, counters, device.createBuffer(sizeof(ViewCounts), "view counters"));
-    PFVOX_TRY(const gpu::Buffer, colours, device.createBuffer(sizeof(glm::vec4) * bandPixels, "colours"));
+    PFVOX_TRY(const gpu::Buffer, colors, device.createBuffer(sizeof(glm::vec4) * bandPixels, "colors"));
     PFVOX_TRY(const gpu::Buffer, pixels, device.createBuffer(4 * bandPixels, "view pixels"));
     PFVOX_CHECK(seen_->ensure(device, input, settings, bandPixels));
     ViewCounts counts{};
@@ -127,14 +132,14 @@ Result<Picture> PictureRenderer::render(gpu::Device& device, const PictureInput&
         const Band band{.parameters = parameters,
                         .resolveParameters = resolve,
                         .counters = counters,
-                        .colours = colours,
+                        .colors = colors,
                         .pixels = pixels,
                         .firstRow = row,
                         .rowCount = std::min(bandRows, settings.height - row)};
         PFVOX_CHECK(drawBand(device, input, settings, band, times));
-        const std::span<std::uint32_t> rows = std::span(picture.pixels)
-                                                  .subspan(std::size_t{row} * settings.width,
-                                                           std::size_t{band.rowCount} * settings.width);
+        const std::span<std::uint32_t> rows =
+            std::span(picture.pixels)
+                .subspan(std::size_t{row} * settings.width, std::size_t{band.rowCount} * settings.width);
         PFVOX_CHECK(device.download(pixels, 0, std::as_writable_bytes(rows)));
     }
     PFVOX_CHECK(device.download(counters, 0, std::as_writable_bytes(std::span(counts))));

@@ -91,16 +91,17 @@ struct PictureStatistics {
     double gpuMs = 0.0;
     PassTimes passMs{};
     std::uint64_t cameraRays = 0;
-    std::uint64_t steps = 0;       ///< octree iterations of all rays, shadows counted
-    std::uint64_t hits = 0;        ///< camera rays that met a voxel
-    std::uint64_t cappedRays = 0;  ///< given up after too many steps: a fault of ours or of the data
+    std::uint64_t steps = 0;          ///< octree iterations of all rays, shadows counted
+    std::uint64_t hits = 0;           ///< camera rays that met a voxel
+    std::uint64_t stepLimitRays = 0;  ///< given up after too many steps: a fault of ours or of the data
     std::uint64_t sunRays = 0;
-    std::uint64_t ambientRays = 0;                 ///< that guess indirect light
-    std::uint64_t reflectionRays = 0;              ///< shadow rays where they end counted
-    std::array<std::uint64_t, gpu::kProbeTierCount> tiers{};  ///< surface samples by what gave their indirect light
-    std::uint64_t withoutValue = 0;                ///< of these: none, or not finite
-    std::array<std::uint64_t, 3> fieldStates{};    ///< camera rays through the probes: miss, hit, unknown
-    std::uint64_t fieldAgrees = 0;                 ///< of these, the octree says the same (view FieldDifference)
+    std::uint64_t ambientRays = 0;     ///< that guess indirect light
+    std::uint64_t reflectionRays = 0;  ///< shadow rays where they end counted
+    std::array<std::uint64_t, gpu::kProbeTierCount>
+        tiers{};                                 ///< surface samples by what gave their indirect light
+    std::uint64_t withoutValue = 0;              ///< of these: none, or not finite
+    std::array<std::uint64_t, 3> fieldStates{};  ///< camera rays through the probes: miss, hit, unknown
+    std::uint64_t fieldAgrees = 0;  ///< of these, the octree says the same (view FieldDifference)
     PictureStatistics& operator+=(const PictureStatistics& other);
 };
 
@@ -115,8 +116,8 @@ class PictureRenderer {
     PictureRenderer& operator=(PictureRenderer&&) noexcept;
     ~PictureRenderer();
 
-    /// A view that needs probes and has none is the final one (checkView tells before). Large pictures are drawn in bands
-    /// of rows. Errors: GpuOutOfMemory, GpuLost.
+    /// A view that needs probes and has none is the final one (checkView tells before). Large pictures are
+    /// drawn in bands of rows. Errors: GpuOutOfMemory, GpuLost.
     Result<Picture> render(gpu::Device& device, const PictureInput& input, const ViewCamera& camera,
                            const PictureSettings& settings, PictureStatistics& statistics) const;
 
@@ -127,7 +128,7 @@ class PictureRenderer {
                           const Band& band, PictureStatistics& statistics) const;
 
     gpu::Program resolve_;
-    std::unique_ptr<ViewPasses> passes_;   ///< programs made when first needed
+    std::unique_ptr<ViewPasses> passes_;  ///< programs made when first needed
     std::unique_ptr<SeenBuffers> seen_;
 };
 

@@ -53,7 +53,7 @@ Json pictureJson(const PictureSettings& settings, const PictureStatistics& pictu
             {"hits", picture.hits},
             {"steps", picture.steps},
             {"stepsPerCameraRay", rays > 0.0 ? static_cast<double>(picture.steps) / rays : 0.0},
-            {"cappedRays", picture.cappedRays}};
+            {"stepLimitRays", picture.stepLimitRays}};
 }
 
 /// Where the indirect light of a picture comes from; null where it has none.
@@ -76,12 +76,12 @@ Json lightJson(const PictureStatistics& picture) {
     std::uint64_t samples = 0;
     for (const std::uint64_t tier : picture.tiers) samples += tier;
     if (samples == 0) return nullptr;
-    Json shares;
+    Json fractions;
     for (std::size_t i = 0; i < picture.tiers.size(); ++i) {
-        shares[std::string(gpu::toString(static_cast<gpu::ProbeTier>(i)))] =
+        fractions[std::string(gpu::toString(static_cast<gpu::ProbeTier>(i)))] =
             static_cast<double>(picture.tiers[i]) / static_cast<double>(samples);
     }
-    return {{"lookups", samples}, {"withoutValue", picture.withoutValue}, {"tierShares", shares}};
+    return {{"lookups", samples}, {"withoutValue", picture.withoutValue}, {"tierFractions", fractions}};
 }
 
 Json fieldJson(const PictureStatistics& picture) {
@@ -95,8 +95,8 @@ Json spreadJson(std::vector<double> values) {
     std::ranges::sort(values);
     double sum = 0.0;
     for (const double value : values) sum += value;
-    const auto at = [&](double share) {
-        return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1) + 0.5)];
+    const auto at = [&](double fraction) {
+        return values[static_cast<std::size_t>(fraction * static_cast<double>(values.size() - 1) + 0.5)];
     };
     return {{"mean", sum / static_cast<double>(values.size())}, {"median", at(0.5)}, {"p95", at(0.95)}};
 }

@@ -36,8 +36,8 @@ fs::path freeScreenshotName(const fs::path& folder, const fs::path& file) {
 
 }  // namespace
 
-Result<std::unique_ptr<Session>> Session::create(gpu::Device& device, const SessionStart& start, Memory memory,
-                                                 MessageLog& log) {
+Result<std::unique_ptr<Session>> Session::create(gpu::Device& device, const SessionStart& start,
+                                                 Memory memory, MessageLog& log) {
     PFVOX_TRY(FrameSequence, frames, FrameSequence::create(device));
     PFVOX_TRY(gpu::RayQuery, query, gpu::RayQuery::create(device));
     std::unique_ptr<Session> session(new Session(device, std::move(frames), std::move(query), log));
@@ -82,8 +82,9 @@ void Session::load(OpenPath path, bool keepCamera) {
     forgetLoading();
     loading_ = Loading{.path = std::move(path),
                        .keepCamera = keepCamera,
-                       .scene = std::async(std::launch::async,
-                                           [file, log, read = start_.read] { return read(file, Limits{}, *log); })};
+                       .scene = std::async(std::launch::async, [file, log, read = start_.read] {
+                           return read(file, Limits{}, *log);
+                       })};
 }
 
 /// Without waiting for it, as the end of a future of std::async would.
@@ -119,7 +120,8 @@ Result<void> Session::placeCamera(const fs::path& file, const Scene& scene) {
 Result<void> Session::show(OpenPath path, LoadedScene loaded, bool keepCamera) {
     PFVOX_TRY(gpu::Scene, scene, gpu::Scene::build(*device_, gpu::partsOf(loaded), *log_));
     if (shown_ && !keepCamera) rememberCamera();
-    const bool sameLight = keepCamera && shown_ && lightingOf(shown_->loaded.scene) == lightingOf(loaded.scene);
+    const bool sameLight =
+        keepCamera && shown_ && lightingOf(shown_->loaded.scene) == lightingOf(loaded.scene);
     if (!sameLight) lighting = lightingOf(loaded.scene);
     if (!keepCamera) probes_.reset();
     emitters_.reset();
@@ -136,16 +138,17 @@ Result<void> Session::show(OpenPath path, LoadedScene loaded, bool keepCamera) {
 }
 
 void Session::update(double secondsSinceStart) {
-    const auto isDone = [](const auto& scene) { return scene.wait_for(std::chrono::seconds(0)) == std::future_status::ready; };
+    const auto isDone = [](const auto& scene) {
+        return scene.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+    };
     std::erase_if(outdated_, isDone);
     if (loading_ && isDone(loading_->scene)) {
         Loading done = *std::exchange(loading_, std::nullopt);
         Result<LoadedScene> loaded = done.scene.get();
         const std::string name = done.path.file.string();
         if (loaded) log_->dismissStrip();  // before: what is wrong with the probes is to stay
-        const Result<void> shown =
-            loaded ? show(std::move(done.path), *std::move(loaded), done.keepCamera)
-                   : Result<void>(tl::make_unexpected(loaded.error()));
+        const Result<void> shown = loaded ? show(std::move(done.path), *std::move(loaded), done.keepCamera)
+                                          : Result<void>(tl::make_unexpected(loaded.error()));
         if (shown) {
             log_->add(MessageKind::Note, "shows " + name);
         } else {
@@ -207,9 +210,9 @@ void Session::execute(const KeyBinding& binding) {
         case Command::Reload:
             return composer.leave([this] { reload(); });
         case Command::NextFile:
-            return openNeighbour(1);
+            return openNeighbor(1);
         case Command::PreviousFile:
-            return openNeighbour(-1);
+            return openNeighbor(-1);
         case Command::DismissMessage:
             if (!log_->strip()) composer.editor.select(std::nullopt);
             return log_->dismissStrip();
@@ -230,9 +233,9 @@ void Session::pickAt(glm::dvec2 parts) {
     pick_ = describePick(shown_->loaded, ray, batch->hits.front());
     composer.editor.select(pick_ ? std::optional(pick_->modelIndex) : std::nullopt);
     if (pick_) {
-        log_->add(MessageKind::Note, fmt::format("voxel {}, {}, {} of '{}', instance {}, material {}", pick_->voxel.x,
-                                                 pick_->voxel.y, pick_->voxel.z, pick_->model, pick_->instance,
-                                                 pick_->material));
+        log_->add(MessageKind::Note, fmt::format("voxel {}, {}, {} of '{}', instance {}, material {}",
+                                                 pick_->voxel.x, pick_->voxel.y, pick_->voxel.z, pick_->model,
+                                                 pick_->instance, pick_->material));
     }
 }
 
@@ -242,7 +245,8 @@ void Session::writeScreenshot() {
     Result<Picture> picture = frames_.picture(*device_);
     const Result<void> written =
         picture ? writePng(file, *picture) : Result<void>(tl::make_unexpected(picture.error()));
-    written ? log_->add(MessageKind::Note, "wrote " + file.string()) : log_->addError(describe(written.error()));
+    written ? log_->add(MessageKind::Note, "wrote " + file.string())
+            : log_->addError(describe(written.error()));
 }
 
 bool Session::showsSingleModel() const {

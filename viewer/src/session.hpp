@@ -1,8 +1,10 @@
-// Session: everything of the interactive viewer but the window: what is loaded, how it is seen, what commands do.
+// Session: everything of the interactive viewer but the window: what is loaded, how it is seen, what commands
+// do.
 //
 //     paths, commands, time -> Session -> pixels on the device, messages
 //
-// Files are read in the background; the scene on the screen stays until the next one is ready, and when that fails.
+// Files are read in the background; the scene on the screen stays until the next one is ready, and when that
+// fails.
 #pragma once
 
 #include <deque>
@@ -44,26 +46,28 @@ struct SessionStart {
     AtlasChoice atlas = {};
     std::filesystem::path screenshotFolder = {};  ///< empty = where the program runs
     /// What reads files and scenes, on a thread of its own.
-    std::function<Result<LoadedScene>(const std::filesystem::path&, const Limits&, Diagnostics&)> read = loadScene;
+    std::function<Result<LoadedScene>(const std::filesystem::path&, const Limits&, Diagnostics&)> read =
+        loadScene;
 };
 
 class Session {
   public:
     /// Begins to load. Errors: those of the programs on the device.
-    static Result<std::unique_ptr<Session>> create(gpu::Device& device, const SessionStart& start, Memory memory,
-                                                   MessageLog& log);
+    static Result<std::unique_ptr<Session>> create(gpu::Device& device, const SessionStart& start,
+                                                   Memory memory, MessageLog& log);
 
     /// Begins to load another file, scene or folder, after the question about unsaved changes.
     void open(const std::filesystem::path& path);
     /// The same files again; unsaved changes are lost.
     void reload();
-    /// Probes from this file for what is shown, at once; on an error the probes so far stay and the strip tells. Empty =
-    /// those beside the scene, if there are any.
+    /// Probes from this file for what is shown, at once; on an error the probes so far stay and the strip
+    /// tells. Empty = those beside the scene, if there are any.
     void loadProbes(const std::filesystem::path& file);
     /// Light without probes until the next loadProbes() or open().
     void dropProbes();
     void execute(const KeyBinding& binding);
-    /// Tells what is at a point of the picture: parts of its edges from the upper left. Its model becomes selected.
+    /// Tells what is at a point of the picture: parts of its edges from the upper left. Its model becomes
+    /// selected.
     void pickAt(glm::dvec2 parts);
 
     // Composing (session_compose.cpp).
@@ -86,8 +90,8 @@ class Session {
     void frameSelected();
     /// The present view becomes a camera of the scene.
     void addCamera();
-    /// Where a probe of the shown scene's grid stands, or will: of a baked field of the same grid it is the place after
-    /// relocation. Precondition: shown() and an index of its grid.
+    /// Where a probe of the shown scene's grid stands, or will: of a baked field of the same grid it is the
+    /// place after relocation. Precondition: shown() and an index of its grid.
     glm::dvec3 placeOfProbe(std::uint32_t index) const;
     /// Of the file of the selected model, metres. Precondition: shown().
     double fileVoxelOfSelected() const;
@@ -118,13 +122,14 @@ class Session {
     /// Settings and cameras as they are to be remembered.
     Memory memory() const;
 
-    /// Where the maps lie when the picture is a page of them, in pixels of frames(); then no scene is under the cursor.
+    /// Where the maps lie when the picture is a page of them, in pixels of frames(); then no scene is under
+    /// the cursor.
     std::optional<AtlasLayout> shownAtlas() const;
 
     // What windows change.
     CameraController camera;
     Settings settings;
-    Lighting lighting;  ///< without the exposure, which is in `settings`
+    Lighting lighting;                ///< without the exposure, which is in `settings`
     ViewMode mode = ViewMode::Final;  ///< one that checkView refuses shows the final picture instead
     AtlasChoice atlas;                ///< which probes the atlas views show
     bool showHelp = false;
@@ -158,7 +163,7 @@ class Session {
     Result<void> placeCamera(const std::filesystem::path& file, const Scene& scene);
     void rememberCamera();
     void nextCamera();
-    void openNeighbour(int step);
+    void openNeighbor(int step);
     void writeScreenshot();
     PictureSettings pictureSettings(glm::uvec2 windowPixels) const;
     Result<const GpuEmitters*> emittersFor(const PictureSettings& picture);

@@ -31,12 +31,18 @@ gpu::WorldBox worldBoxOf(const WorldBounds& bounds) {
 
 glm::dvec3 vectorOf(MoveDirection direction) {
     switch (direction) {
-        case MoveDirection::Left: return {-1, 0, 0};
-        case MoveDirection::Right: return {1, 0, 0};
-        case MoveDirection::Back: return {0, 0, -1};
-        case MoveDirection::Front: return {0, 0, 1};
-        case MoveDirection::Down: return {0, -1, 0};
-        case MoveDirection::Up: return {0, 1, 0};
+        case MoveDirection::Left:
+            return {-1, 0, 0};
+        case MoveDirection::Right:
+            return {1, 0, 0};
+        case MoveDirection::Back:
+            return {0, 0, -1};
+        case MoveDirection::Front:
+            return {0, 0, 1};
+        case MoveDirection::Down:
+            return {0, -1, 0};
+        case MoveDirection::Up:
+            return {0, 1, 0};
     }
     return glm::dvec3(0.0);
 }
@@ -71,14 +77,14 @@ void Session::quit() {
     composer.leave([this] { quit_ = true; });
 }
 
-void Session::openNeighbour(int step) {
+void Session::openNeighbor(int step) {
     if (wanted_.siblings.size() < 2) {
         log_->add(MessageKind::Note, "there is no other file: open a folder to go through its files");
         return;
     }
     composer.leave([this, step] {
         probeRequest_ = {};  // those of the file that is left are not the next one's
-        load({.file = neighbourOf(wanted_, step), .siblings = wanted_.siblings}, false);
+        load({.file = neighborOf(wanted_, step), .siblings = wanted_.siblings}, false);
     });
 }
 
@@ -99,11 +105,13 @@ void Session::filesChanged() {
     const bool edited = editor.canUndo() || editor.canRedo();
     if (!edited) return reload();
     DiagnosticList ignored;
-    const bool sceneIsOurs = editor.file().empty() || readScene(editor.file(), Limits{}, ignored) == editor.saved();
+    const bool sceneIsOurs =
+        editor.file().empty() || readScene(editor.file(), Limits{}, ignored) == editor.saved();
     if (!sceneIsOurs && !editor.isChanged()) return reload();
     if (!sceneIsOurs) {
-        log_->addError(editor.file().string() + ": another program has changed this file. Your changes are kept here: save "
-                                                "them to replace it, or read it again (R) to lose them");
+        log_->addError(editor.file().string() +
+                       ": another program has changed this file. Your changes are kept here: save "
+                       "them to replace it, or read it again (R) to lose them");
     }
     composer.readAgain();
     if (shown_) findProbesOf(*shown_);
@@ -138,7 +146,8 @@ Result<void> Session::rearrange(LoadedScene loaded) {
     const bool wasEmpty = shown_->loaded.bounds.empty();
     const bool otherFiles = loaded.scene.models.size() != shown_->loaded.scene.models.size();
     if (!sameModels(loaded, shown_->loaded)) {
-        PFVOX_TRY(gpu::Scene, scene, gpu::Scene::build(*device_, gpu::partsOf(loaded), *log_, &shown_->scene));
+        PFVOX_TRY(gpu::Scene, scene,
+                  gpu::Scene::build(*device_, gpu::partsOf(loaded), *log_, &shown_->scene));
         shown_->scene = std::move(scene);
         emitters_.reset();
         pick_.reset();
@@ -267,7 +276,7 @@ void Session::executeEdit(const KeyBinding& binding) {
         case Command::Resize:
             return changeSelected([&](const SceneModel& model, const WorldBounds& box) {
                 return resized(model, {.factor = binding.argument > 0 ? kResizeFactor : 1.0 / kResizeFactor,
-                                       .centre = footOf(box),
+                                       .center = footOf(box),
                                        .voxelMetres = fileVoxelOfSelected()});
             });
         case Command::FrameSelected:

@@ -79,8 +79,10 @@ bool Session::selectProbeAt(glm::dvec2 parts) {
 }
 
 glm::dvec3 Session::placeOfProbe(std::uint32_t index) const {
-    const bool sameGrid = probes_ && probes_->info.grid == shown_->loaded.probes && index < probes_->probes.size();
-    return sameGrid ? glm::dvec3(probes_->probes[index].position) : glm::dvec3(shown_->loaded.probes.pointOf(index));
+    const bool sameGrid =
+        probes_ && probes_->info.grid == shown_->loaded.probes && index < probes_->probes.size();
+    return sameGrid ? glm::dvec3(probes_->probes[index].position)
+                    : glm::dvec3(shown_->loaded.probes.pointOf(index));
 }
 
 }  // namespace pfvox::viewer

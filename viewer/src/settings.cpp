@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <toml++/toml.h>
 #include <cmath>
 #include <optional>
 #include <pfvox/files.hpp>
 #include <sstream>
-#include <toml++/toml.h>
 
 #include "scene/toml_nesting.hpp"
 
@@ -27,7 +27,8 @@ Result<toml::table> parsed(std::string_view text) {
     try {
         return toml::parse(text);
     } catch (const toml::parse_error& error) {
-        return fail(ErrorCode::BadStructure, fmt::format("line {}: {}", error.source().begin.line, error.description()));
+        return fail(ErrorCode::BadStructure,
+                    fmt::format("line {}: {}", error.source().begin.line, error.description()));
     }
 }
 
@@ -40,7 +41,7 @@ class Reader {
         const auto node = table_[key];
         if (!node) return;
         const std::optional<double> found = node.value<double>();
-        found && *found >= low && *found <= high ? value = *found : complain(key, value);
+        found&&* found >= low&&* found <= high ? value = *found : complain(key, value);
     }
     void edge(const char* key, std::uint32_t& value) const {
         double number = value;
@@ -201,7 +202,8 @@ Result<void> saveMemory(const UserFolders& folders, const Memory& memory) {
     const std::string settings = settingsText(memory.settings);
     const std::string cameras = camerasText(memory.cameras);
     if (!folders.config.empty())
-        PFVOX_CHECK(io::writeFileAtomically(folders.config / kSettingsFile, std::as_bytes(std::span(settings))));
+        PFVOX_CHECK(
+            io::writeFileAtomically(folders.config / kSettingsFile, std::as_bytes(std::span(settings))));
     if (!folders.state.empty())
         PFVOX_CHECK(io::writeFileAtomically(folders.state / kCamerasFile, std::as_bytes(std::span(cameras))));
     return {};

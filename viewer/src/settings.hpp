@@ -20,20 +20,20 @@ struct Settings {
     std::uint32_t windowHeight = 720;
     CameraMode cameraMode = CameraMode::Orbit;
     bool showWindows = true;
-    bool antiAliasing = true;   ///< temporal: frames become one picture
-    double renderScale = 1.0;   ///< pixels computed for each pixel of the window, along an edge: 0.25 to 1
-    double lodPixels = 1.0;     ///< PictureSettings::lodPixels, 0 to 16
-    double exposureStops = 0.0; ///< -16 to 16
+    bool antiAliasing = true;    ///< temporal: frames become one picture
+    double renderScale = 1.0;    ///< pixels computed for each pixel of the window, along an edge: 0.25 to 1
+    double lodPixels = 1.0;      ///< PictureSettings::lodPixels, 0 to 16
+    double exposureStops = 0.0;  ///< -16 to 16
     ToneMap toneMap = ToneMap::Standard;
-    bool modelGround = true;    ///< a ground under a single model
-    bool sceneGround = false;   ///< and under scenes
-    bool showProbeGrid = false; ///< upon the picture
-    bool showBounds = false;    ///< boxes of the models, upon the picture
+    bool modelGround = true;     ///< a ground under a single model
+    bool sceneGround = false;    ///< and under scenes
+    bool showProbeGrid = false;  ///< upon the picture
+    bool showBounds = false;     ///< boxes of the models, upon the picture
     bool operator==(const Settings&) const = default;
 };
 
-/// Unknown keys are ignored; what is out of range or of the wrong type becomes its default, with the diagnostic
-/// "settings-bad-value". Errors: BadStructure (not TOML).
+/// Unknown keys are ignored; what is out of range or of the wrong type becomes its default, with the
+/// diagnostic "settings-bad-value". Errors: BadStructure (not TOML).
 Result<Settings> parseSettings(std::string_view text, Diagnostics& diagnostics);
 std::string settingsText(const Settings& settings);
 
@@ -49,8 +49,8 @@ struct UserFolders {
     std::filesystem::path config;
     std::filesystem::path state;
 };
-/// From the values of XDG_CONFIG_HOME, XDG_STATE_HOME and HOME; null = not set. Relative ones count as not set, as the
-/// XDG specification says. Both are empty when there is no home: nothing is remembered then.
+/// From the values of XDG_CONFIG_HOME, XDG_STATE_HOME and HOME; null = not set. Relative ones count as not
+/// set, as the XDG specification says. Both are empty when there is no home: nothing is remembered then.
 UserFolders userFolders(const char* configHome, const char* stateHome, const char* home);
 
 /// Both files; what is not there or cannot be read has defaults, the latter with a diagnostic.

@@ -55,12 +55,13 @@ Result<fs::path> sceneBeside(const fs::path& probes) {
         if (isThere(scene)) return scene;
     }
     const fs::path stem = probes.stem();
-    return tl::make_unexpected(
-        Error{.code = ErrorCode::FileNotFound,
-              .message = fmt::format("probes are shown with their scene, and there is neither '{0}.toml' nor '{0}.pf_vox' "
-                                     "beside them: pfview scene.toml --probes '{1}'",
-                                     stem.string(), probes.string()),
-              .file = probes});
+    return tl::make_unexpected(Error{
+        .code = ErrorCode::FileNotFound,
+        .message =
+            fmt::format("probes are shown with their scene, and there is neither '{0}.toml' nor '{0}.pf_vox' "
+                        "beside them: pfview scene.toml --probes '{1}'",
+                        stem.string(), probes.string()),
+        .file = probes});
 }
 
 float voxelMetresOf(const LoadedScene& scene) {
@@ -87,9 +88,10 @@ Result<ShownProbes> openProbes(gpu::Device& device, const fs::path& file, const 
                       .ofThisScene = reader->info().sceneHash == sceneContentHash(scene),
                       .field = *std::move(field)};
     if (!shown.ofThisScene) {
-        diagnostics.warn("probes-other-scene",
-                         fmt::format("'{}' was baked for another state of the scene; used as it is. To bake anew: {}",
-                                     file.string(), bakeCommand(sceneFile, file)));
+        diagnostics.warn(
+            "probes-other-scene",
+            fmt::format("'{}' was baked for another state of the scene; used as it is. To bake anew: {}",
+                        file.string(), bakeCommand(sceneFile, file)));
     }
     return shown;
 }
@@ -114,24 +116,27 @@ Result<void> checkView(ViewMode mode, const ShownProbes* probes, const fs::path&
     const ViewEntry& entry = entryOf(mode);
     if (entry.needs == ViewNeeds::Nothing) return {};
     if (probes == nullptr && sceneFile.empty()) {
-        return fail(ErrorCode::FileNotFound, fmt::format("the view '{}' shows probes, and there are none; save the scene, "
-                                                         "then probe-bake makes them", entry.name));
+        return fail(ErrorCode::FileNotFound,
+                    fmt::format("the view '{}' shows probes, and there are none; save the scene, "
+                                "then probe-bake makes them",
+                                entry.name));
     }
     if (probes == nullptr) {
         const fs::path file = probesBeside(sceneFile);
         return tl::make_unexpected(
             Error{.code = ErrorCode::FileNotFound,
-                  .message = fmt::format("the view '{}' shows probes, and there are none; bake them: {}", entry.name,
-                                         bakeCommand(sceneFile, file)),
+                  .message = fmt::format("the view '{}' shows probes, and there are none; bake them: {}",
+                                         entry.name, bakeCommand(sceneFile, file)),
                   .file = file});
     }
     if (entry.needs == ViewNeeds::DepthMaps && probes->info.resolution.depth == 0) {
-        return tl::make_unexpected(
-            Error{.code = ErrorCode::UnsupportedFeature,
-                  .message = fmt::format("the view '{}' shows depth maps, and these probes have none; bake with them: {} "
-                                         "--profile default",
-                                         entry.name, bakeCommand(sceneFile, probes->file)),
-                  .file = probes->file});
+        return tl::make_unexpected(Error{
+            .code = ErrorCode::UnsupportedFeature,
+            .message =
+                fmt::format("the view '{}' shows depth maps, and these probes have none; bake with them: {} "
+                            "--profile default",
+                            entry.name, bakeCommand(sceneFile, probes->file)),
+            .file = probes->file});
     }
     return {};
 }

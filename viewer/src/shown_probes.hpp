@@ -29,11 +29,12 @@ struct ShownProbes {
     gpu::GpuProbes field;
 };
 
-/// "court.toml" -> "court.pf_probe", whether or not it is there; likewise for a .pf_vox file. Of a scene without a file:
-/// empty.
+/// "court.toml" -> "court.pf_probe", whether or not it is there; likewise for a .pf_vox file. Of a scene
+/// without a file: empty.
 std::filesystem::path probesBeside(const std::filesystem::path& scene);
 
-/// The scene or .pf_vox file that a probe file lights: the one beside it with the same stem. Errors: FileNotFound.
+/// The scene or .pf_vox file that a probe file lights: the one beside it with the same stem. Errors:
+/// FileNotFound.
 Result<std::filesystem::path> sceneBeside(const std::filesystem::path& probes);
 
 /// What the command line says about probes.
@@ -45,24 +46,26 @@ struct ProbeRequest {
 /// Edge of the smallest visible voxel, metres.
 float voxelMetresOf(const LoadedScene& scene);
 
-/// Reads a field and uploads it. Probes that were baked for another state of the scene are used with the diagnostic
-/// "probes-other-scene", which tells how to bake anew. Errors: those of ProbeFileReader::open (what a file is that is no
-/// probe file, and how to make one) and GpuProbes::upload, with `file`.
-Result<ShownProbes> openProbes(gpu::Device& device, const std::filesystem::path& file, const LoadedScene& scene,
-                               const std::filesystem::path& sceneFile, Diagnostics& diagnostics);
+/// Reads a field and uploads it. Probes that were baked for another state of the scene are used with the
+/// diagnostic "probes-other-scene", which tells how to bake anew. Errors: those of ProbeFileReader::open
+/// (what a file is that is no probe file, and how to make one) and GpuProbes::upload, with `file`.
+Result<ShownProbes> openProbes(gpu::Device& device, const std::filesystem::path& file,
+                               const LoadedScene& scene, const std::filesystem::path& sceneFile,
+                               Diagnostics& diagnostics);
 
-/// The probes that a request leads to; nothing when it asks for none, or for those beside the scene and there are none.
-/// Errors: those of openProbes.
+/// The probes that a request leads to; nothing when it asks for none, or for those beside the scene and there
+/// are none. Errors: those of openProbes.
 Result<std::optional<ShownProbes>> findProbes(gpu::Device& device, const ProbeRequest& request,
-                                              const LoadedScene& scene, const std::filesystem::path& sceneFile,
+                                              const LoadedScene& scene,
+                                              const std::filesystem::path& sceneFile,
                                               Diagnostics& diagnostics);
 
 /// What is to be told of a picture without probes: that its indirect light is a guess, and the command that
 /// bakes.
 std::string guessNote(const std::filesystem::path& sceneFile);
 
-/// Whether this view of a scene shows anything. Errors: FileNotFound (no probes), UnsupportedFeature (probes without depth
-/// maps); both name the command that makes what is missing.
+/// Whether this view of a scene shows anything. Errors: FileNotFound (no probes), UnsupportedFeature (probes
+/// without depth maps); both name the command that makes what is missing.
 Result<void> checkView(ViewMode mode, const ShownProbes* probes, const std::filesystem::path& sceneFile);
 
 }  // namespace pfvox::viewer

@@ -24,11 +24,12 @@ constexpr std::array kModes{
     ViewEntry{ViewMode::Field, "field", '0', false, "0", "rays traced through the probes", DepthMaps, false},
     ViewEntry{ViewMode::FieldDifference, "field-difference", '1', true, "Ctrl+1",
               "the same against the octree", DepthMaps, false},
-    ViewEntry{ViewMode::AtlasLight, "atlas-light", '2', true, "Ctrl+2", "maps of the probes: light", Probes, true},
-    ViewEntry{ViewMode::AtlasNormals, "atlas-normals", '3', true, "Ctrl+3", "maps of the probes: normals", DepthMaps,
-              false},
-    ViewEntry{ViewMode::AtlasDepth, "atlas-depth", '4', true, "Ctrl+4", "maps of the probes: distances", DepthMaps,
-              false},
+    ViewEntry{ViewMode::AtlasLight, "atlas-light", '2', true, "Ctrl+2", "maps of the probes: light", Probes,
+              true},
+    ViewEntry{ViewMode::AtlasNormals, "atlas-normals", '3', true, "Ctrl+3", "maps of the probes: normals",
+              DepthMaps, false},
+    ViewEntry{ViewMode::AtlasDepth, "atlas-depth", '4', true, "Ctrl+4", "maps of the probes: distances",
+              DepthMaps, false},
 };
 static_assert(kModes.size() == kViewModes && shared::kViewModeCount == kViewModes);
 

@@ -1,4 +1,5 @@
-// View modes: what the colours of a picture show, in one table that command line, keys, panels, help and tests share.
+// View modes: what the colors of a picture show, in one table that command line, keys, panels, help and tests
+// share.
 #pragma once
 
 #include <cstdint>
@@ -10,9 +11,9 @@ namespace pfvox::viewer {
 
 enum class ViewMode : std::uint8_t {
     Final,            ///< sun with shadow, indirect light, sky, emission, reflections, glass
-    Albedo,           ///< base colour
+    Albedo,           ///< base color
     Normals,          ///< world normal, [-1, 1] to [0, 1]
-    Material,         ///< a colour for each material index
+    Material,         ///< a color for each material index
     Depth,            ///< edge of the leaf in the octree: hot = one voxel, cold = 64 and more
     Steps,            ///< iterations of the traversal: cold = few
     Lod,              ///< edge of the cell that was hit: hot = one voxel; dark where it is no level of detail
@@ -30,13 +31,13 @@ enum class ViewNeeds : std::uint8_t { Nothing, Probes, DepthMaps };
 
 struct ViewEntry {
     ViewMode mode;
-    std::string_view name;     ///< of --view
-    int key;                   ///< as KeyBinding has it
+    std::string_view name;  ///< of --view
+    int key;                ///< as KeyBinding has it
     bool control;
     std::string_view keyText;
-    std::string_view what;     ///< for help
+    std::string_view what;  ///< for help
     ViewNeeds needs;
-    bool isRadiance;           ///< exposure and tone map act on it
+    bool isRadiance;  ///< exposure and tone map act on it
 };
 
 /// In the order of ViewMode.
@@ -48,9 +49,9 @@ std::string_view toString(ViewMode mode);
 /// Pages of maps instead of a picture of the scene.
 bool isAtlas(ViewMode mode);
 
-/// How radiance becomes a colour of the screen.
+/// How radiance becomes a color of the screen.
 enum class ToneMap : std::uint8_t {
-    Standard,  ///< straight up to 0.7, then a shoulder; colours of the source stay what they are
+    Standard,  ///< straight up to 0.7, then a shoulder; colors of the source stay what they are
     Linear,    ///< clamped at 1
     Reinhard,  ///< x / (1 + x) of the luminance
     Aces,      ///< Narkowicz's fit of the ACES curve

@@ -34,7 +34,8 @@ shared::ViewParameters viewParametersOf(const ViewCamera& camera, const PictureS
     const double tanY = std::tan(glm::radians(0.5 * camera.fovYDegrees));
     const double tanX = tanY * settings.width / settings.height;
     const Lighting& light = settings.lighting;
-    const auto probeCount = static_cast<std::uint32_t>(input.probes != nullptr ? input.probes->probes.size() : 0);
+    const auto probeCount =
+        static_cast<std::uint32_t>(input.probes != nullptr ? input.probes->probes.size() : 0);
     const AtlasLayout atlas = atlasLayout(settings, probeCount);
     const gpu::WorldBox& box = input.scene.bounds();
     const double diagonal = box.empty() ? 0.0 : glm::length(box.max - box.min);
@@ -77,7 +78,7 @@ PictureStatistics statisticsOf(const ViewCounts& counts, std::uint64_t cameraRay
     s.cameraRays = cameraRays;
     s.steps = joined(counts[shared::kCountSteps]);
     s.hits = joined(counts[shared::kCountHits]);
-    s.cappedRays = joined(counts[shared::kCountCapped]);
+    s.stepLimitRays = joined(counts[shared::kCountStepLimit]);
     s.sunRays = joined(counts[shared::kCountSunRays]);
     s.reflectionRays = joined(counts[shared::kCountReflectionRays]);
     s.ambientRays = joined(counts[shared::kCountAmbientRays]);

@@ -71,7 +71,8 @@ std::string_view toString(Pass pass) {
 ViewMode drawnMode(const PictureInput& input, const PictureSettings& settings) {
     const ViewNeeds needs = entryOf(settings.mode).needs;
     const bool hasDepth = input.probes != nullptr && input.probes->info.resolution.depth != 0;
-    const bool fits = needs == ViewNeeds::Nothing || (needs == ViewNeeds::Probes && input.probes != nullptr) ||
+    const bool fits = needs == ViewNeeds::Nothing ||
+                      (needs == ViewNeeds::Probes && input.probes != nullptr) ||
                       (needs == ViewNeeds::DepthMaps && hasDepth);
     return fits ? settings.mode : ViewMode::Final;
 }
@@ -90,8 +91,8 @@ glm::uvec3 groupsFor(std::uint32_t width, std::uint32_t height) {
     return {(width + edge - 1) / edge, (height + edge - 1) / edge, 1};
 }
 
-Result<void> SeenBuffers::ensure(gpu::Device& device, const PictureInput& input, const PictureSettings& settings,
-                                 std::uint64_t pixelCount) {
+Result<void> SeenBuffers::ensure(gpu::Device& device, const PictureInput& input,
+                                 const PictureSettings& settings, std::uint64_t pixelCount) {
     const ViewMode mode = drawnMode(input, settings);
     const auto fit = [&](std::optional<gpu::Buffer>& buffer, bool needed, std::uint64_t bytes,
                          std::string_view name) -> Result<void> {
@@ -123,7 +124,7 @@ Result<void> ViewPasses::add(gpu::Device& device, const PictureInput& input, con
     const glm::uvec3 groups = groupsFor(settings.width, targets.rowCount);
     shared::ViewPushConstants push{.scene = input.scene.address(),
                                    .parameters = targets.parameters,
-                                   .colours = targets.colours,
+                                   .colors = targets.colors,
                                    .counters = targets.counters,
                                    .seen = targets.buffers->seen(),
                                    .shine = targets.buffers->shine(),

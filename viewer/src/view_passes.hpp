@@ -40,7 +40,8 @@ class PassList {
     std::vector<Pass> passes_;
 };
 
-/// What the passes of a frame write besides its colours. Made as large as the frame and as rich as the scene needs.
+/// What the passes of a frame write besides its colors. Made as large as the frame and as rich as the scene
+/// needs.
 class SeenBuffers {
   public:
     /// Errors: GpuOutOfMemory.
@@ -57,7 +58,7 @@ class SeenBuffers {
 /// Device addresses, and the rows that the buffers hold.
 struct PassTargets {
     glm::uvec2 parameters{0};
-    glm::uvec2 colours{0};
+    glm::uvec2 colors{0};
     glm::uvec2 counters{0};
     const SeenBuffers* buffers = nullptr;
     std::uint32_t firstRow = 0;
@@ -66,8 +67,8 @@ struct PassTargets {
 
 class ViewPasses {
   public:
-    /// Adds what computes the colours of one frame. Programs are made when they are first needed. Errors: those of
-    /// Device::createProgram.
+    /// Adds what computes the colors of one frame. Programs are made when they are first needed. Errors:
+    /// those of Device::createProgram.
     Result<void> add(gpu::Device& device, const PictureInput& input, const PictureSettings& settings,
                      const PassTargets& targets, PassList& list);
 

@@ -4,8 +4,8 @@
 //                     per probe: place -> what it sees -> light there -> small layers -> journal
 //                     at the end: proximity grid -> file
 //
-// What is stored is I = E / pi of indirect light; the method is in docs/baking.md. Lengths are metres, light is
-// linear RGB. One thread at a time for a device; the observer is called on the calling thread only.
+// What is stored is I = E / pi of indirect light; the method is in docs/baking.md. Lengths are metres, light
+// is linear RGB. One thread at a time for a device; the observer is called on the calling thread only.
 #pragma once
 
 #include <cstdint>
@@ -28,7 +28,7 @@ enum class LightSampling : std::uint8_t {
 };
 /// How a bake is done.
 struct BakeSettings {
-    ProbeResolution resolution = resolutionOf(ProbeProfile::Default);  ///< edges of the maps
+    ProbeResolution resolution = resolutionOf(ProbeProfile::Default);  ///< of the maps
     std::uint64_t seed = 0;                                            ///< of the random numbers
     std::uint32_t minSamples = 32;                                     ///< paths a texel; a multiple of 16
     std::uint32_t maxSamples = 4096;                                   ///< a multiple of 16, >= minSamples
@@ -36,19 +36,20 @@ struct BakeSettings {
     /// noiseFloor); 0 = every texel gets minSamples.
     float noiseTarget = 0.02f;
     float noiseFloor = 0.01f;  ///< radiance
-    /// Reflections a path makes behind its texel: 0 = only light that reaches the texel's surface straight from
-    /// emitters and sky. Nothing = no limit but roulette (and a cap of 128).
+    /// Reflections a path makes behind its texel: 0 = only light that reaches the texel's surface straight
+    /// from emitters and sky. Nothing = no limit but roulette (and a cap of 128).
     std::optional<std::uint32_t> maxBounces;
     /// The probes to bake; the file is then a shard. Nothing = all.
     std::optional<ProbeRange> range;
     LightSampling sampling = LightSampling::Combined;  ///< how paths find light
     bool stratified = true;  ///< Sobol points for the first two vertices; false, for tests: hashes for all
-    bool relocate = true;   ///< move probes out of solids; false: those that touch one are inactive
-    bool filter = true;     ///< take noise out of the light maps (docs/baking.md); false: each texel has its own paths only
-    bool proximity = true;  ///< make the proximity grid; shards have none
-    int zstdLevel = 1;      ///< 1 to 19
-    bool resume = false;    ///< take finished probes from the journal beside the output
-    bool force = false;     ///< bake even if the output is there and says it has this content already
+    bool relocate = true;    ///< move probes out of solids; false: those that touch one are inactive
+    bool filter = true;  ///< take noise out of the light maps (docs/baking.md); false: each texel has its own
+                         ///< paths only
+    bool proximity = true;          ///< make the proximity grid; shards have none
+    int zstdLevel = 1;              ///< 1 to 19
+    bool resume = false;            ///< take finished probes from the journal beside the output
+    bool force = false;             ///< bake even if the output is there and says it has this content already
     double dispatchSeconds = 0.25;  ///< device work is cut into pieces of about this length
     std::string toolName = "pfvox";  ///< kept in the file
 };
@@ -86,36 +87,37 @@ struct BakePass {
 };
 /// What a bake did and what came of it.
 struct BakeReport {
-    bool upToDate = false;  ///< the output had this content already: nothing was done, the rest is empty
-    BakePass geometry;      ///< what the probes see
-    BakePass light;         ///< paths, shadow rays counted
+    bool upToDate = false;       ///< the output had this content already: nothing was done, the rest is empty
+    BakePass geometry;           ///< what the probes see
+    BakePass light;              ///< paths, shadow rays counted
     double smallLayersMs = 0.0;  ///< CPU: irradiance, moments, min maps, summed over threads
-    double proximityMs = 0.0;  ///< CPU, wall clock: the proximity grid
-    double writeMs = 0.0;  ///< compression and journal, summed over threads; then copying into the file
-    double totalMs = 0.0;  ///< wall clock
-    std::uint64_t probes = 0;  ///< in the range of this bake
-    std::uint64_t reused = 0;  ///< taken from the journal
-    ProbeCounts counts;        ///< of these probes
-    std::uint64_t emitterFaces = 0;  ///< exposed faces of emissive voxels
-    std::uint64_t cappedRays = 0;  ///< given up by the traversal; 0 in valid data
+    double proximityMs = 0.0;    ///< CPU, wall clock: the proximity grid
+    double writeMs = 0.0;        ///< compression and journal, summed over threads; then copying into the file
+    double totalMs = 0.0;        ///< wall clock
+    std::uint64_t probes = 0;    ///< in the range of this bake
+    std::uint64_t reused = 0;    ///< taken from the journal
+    ProbeCounts counts;          ///< of these probes
+    std::uint64_t emitterFaces = 0;   ///< exposed faces of emissive voxels
+    std::uint64_t stepLimitRays = 0;  ///< given up by the traversal; 0 in valid data
     /// Relative standard error of I, mean over the probes of which it is known; nothing = of none
     /// (ProbeRecord::error).
     std::optional<double> meanError;
-    std::optional<double> maxError;         ///< the largest of these
-    std::optional<double> cappedTileShare;  ///< tiles that stopped at maxSamples, mean over active probes;
-                                            ///< nothing = not adaptive
+    std::optional<double> maxError;           ///< the largest of these
+    std::optional<double> noisyTileFraction;  ///< tiles that stopped at maxSamples, mean over active probes;
+                                              ///< nothing = not adaptive
     std::optional<double>
         meanSamples;  ///< paths a texel that sees a surface, of probes baked in this run; nothing = none was
-    ProximityReport proximity;     ///< uncoveredCells among it
+    ProximityReport proximity;    ///< uncoveredCells among it
     std::uint64_t fileBytes = 0;  ///< of the output
 };
 
-/// Of everything in a scene that decides the light: models, transforms, materials, sun and sky. Cameras, names
-/// and the probe grid are not in it.
+/// Of everything in a scene that decides the light: models, transforms, materials, sun and sky. Cameras,
+/// names and the probe grid are not in it.
 ContentKey sceneContentHash(const LoadedScene& scene);
 
-/// What a bake of this scene with these settings on this device puts into the header of its file: with an equal
-/// key and an output that holds it and the same probes there is nothing to do. Shards have the key of the whole.
+/// What a bake of this scene with these settings on this device puts into the header of its file: with an
+/// equal key and an output that holds it and the same probes there is nothing to do. Shards have the key of
+/// the whole.
 ContentKey bakeContentKey(const LoadedScene& scene, const BakeSettings& settings,
                           const gpu::DeviceInfo& device);
 

@@ -1,5 +1,5 @@
-// FLIP: how different two pictures look when one alternates between them (Andersson et al. 2020, "FLIP: A Difference
-// Evaluator for Alternating Images"), for pictures of low dynamic range.
+// FLIP: how different two pictures look when one alternates between them (Andersson et al. 2020, "FLIP: A
+// Difference Evaluator for Alternating Images"), for pictures of low dynamic range.
 //
 // Pictures are linear RGB in [0, 1], rows from the top. Pure functions in double precision.
 #pragma once

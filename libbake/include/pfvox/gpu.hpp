@@ -42,14 +42,15 @@ enum class DeviceKind : std::uint8_t { Discrete, Integrated, Virtual, Other, Sof
 const char* toString(DeviceKind kind);
 /// A Vulkan device, whether we can use it or not.
 struct DeviceInfo {
-    std::uint32_t index = 0;  ///< position in listDevices(); selects the device
-    std::string name;  ///< as its driver gives it
+    std::uint32_t index = 0;              ///< position in listDevices(); selects the device
+    std::string name;                     ///< as its driver gives it
     DeviceKind kind = DeviceKind::Other;  ///< discrete, integrated, software
-    std::string driver;  ///< driver name and version, as the driver spells them
-    std::uint32_t apiVersionMajor = 0;       ///< of the device, not of the loader
-    std::uint32_t apiVersionMinor = 0;       ///< of the device, not of the loader
-    std::uint64_t localMemoryBytes = 0;  ///< largest device-local heap, or DeviceOptions::memoryBytes if that is less
-    std::string missing;                 ///< what pfvox needs and the device lacks; empty = usable
+    std::string driver;                   ///< driver name and version, as the driver spells them
+    std::uint32_t apiVersionMajor = 0;    ///< of the device, not of the loader
+    std::uint32_t apiVersionMinor = 0;    ///< of the device, not of the loader
+    std::uint64_t localMemoryBytes =
+        0;                ///< largest device-local heap, or DeviceOptions::memoryBytes if that is less
+    std::string missing;  ///< what pfvox needs and the device lacks; empty = usable
     bool usable() const { return missing.empty(); }  ///< whether it has all that is needed
 };
 
@@ -65,7 +66,8 @@ struct DeviceOptions {
     std::uint64_t memoryBytes = 0;
     /// Turns VK_LAYER_KHRONOS_validation on; its messages are collected, see Device::validationMessages().
     bool validation = false;
-    /// Further extensions for whoever shares the device (pfvox/gpu_native.hpp). A device without them is not usable.
+    /// Further extensions for whoever shares the device (pfvox/gpu_native.hpp). A device without them is not
+    /// usable.
     std::vector<std::string> instanceExtensions = {};
     std::vector<std::string> deviceExtensions = {};  ///< further ones, by name
     /// When set, the queue draws as well as computes and is one for which this is true.
@@ -112,7 +114,8 @@ struct Dispatch {
     const Program* program = nullptr;          ///< what runs; must outlive the dispatch
     std::span<const std::byte> pushConstants;  ///< as many bytes as the program declares
     glm::uvec3 groups{1};                      ///< work groups along x, y, z
-    /// When set, the device reads the workgroups from there at launch: three words at `groupsAtBytes`, a multiple of 4.
+    /// When set, the device reads the workgroups from there at launch: three words at `groupsAtBytes`, a
+    /// multiple of 4.
     const Buffer* groupsFrom = nullptr;
     std::uint64_t groupsAtBytes = 0;  ///< where in that buffer, a multiple of 4
 };

@@ -1,8 +1,9 @@
-// GpuNative: the Vulkan objects under a Device, for programs that use it beside pfvox, above all to show pictures in a
-// window. Nothing here needs a Vulkan header; include <vulkan/vulkan.h> to do something with the handles.
+// GpuNative: the Vulkan objects under a Device, for programs that use it beside pfvox, above all to show
+// pictures in a window. Nothing here needs a Vulkan header; include <vulkan/vulkan.h> to do something with
+// the handles.
 //
-// Whoever submits to the queue does so from the thread that uses the Device. Device::run has finished when it returns,
-// and what it wrote is visible to later copies and shaders on the same queue.
+// Whoever submits to the queue does so from the thread that uses the Device. Device::run has finished when it
+// returns, and what it wrote is visible to later copies and shaders on the same queue.
 #pragma once
 
 #include <cstdint>

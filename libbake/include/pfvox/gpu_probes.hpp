@@ -1,9 +1,10 @@
 // GpuProbes: a probe field in device memory, ready for lookups and light-field tracing.
 //
-//     ProbeFileReader -> [GpuProbes::upload] -> device buffers -> shaders/probe_lookup.glsl, shaders/probe_trace.glsl
+//     ProbeFileReader -> [GpuProbes::upload] -> device buffers -> shaders/probe_lookup.glsl,
+//     shaders/probe_trace.glsl
 //
-// The layout is that of shaders/shared/probes.glsl.h. Probes are read one by one, straight into staging memory: nothing
-// but the device ever holds the field as a whole. World units are metres.
+// The layout is that of shaders/shared/probes.glsl.h. Probes are read one by one, straight into staging
+// memory: nothing but the device ever holds the field as a whole. World units are metres.
 #pragma once
 
 #include <pfvox/gpu.hpp>
@@ -14,8 +15,8 @@
 namespace pfvox::gpu {
 /// What of a probe file goes to the device.
 struct GpuProbeSettings {
-    float voxelMetres = 0.1f;      ///< edge of a voxel of the scene: what offsets are measured in
-    bool compactOnly = false;      ///< leave depth and light maps out: for pictures of the compact layers alone
+    float voxelMetres = 0.1f;  ///< edge of a voxel of the scene: what offsets are measured in
+    bool compactOnly = false;  ///< leave depth and light maps out: for pictures of the compact layers alone
 };
 /// What the probes take there.
 struct GpuProbeStatistics {
@@ -32,16 +33,18 @@ class GpuProbes {
     /// What an upload will take of device memory, bytes.
     static std::uint64_t bytesOf(const ProbeFileReader& reader, const GpuProbeSettings& settings);
 
-    /// Errors: BadStructure (a shard: merge it first), those of ProbeFileReader::readLayer, GpuOutOfMemory (the message
-    /// says how much is needed), GpuLost.
-    static Result<GpuProbes> upload(Device& device, const ProbeFileReader& reader, const GpuProbeSettings& settings);
+    /// Errors: BadStructure (a shard: merge it first), those of ProbeFileReader::readLayer, GpuOutOfMemory
+    /// (the message says how much is needed), GpuLost.
+    static Result<GpuProbes> upload(Device& device, const ProbeFileReader& reader,
+                                    const GpuProbeSettings& settings);
 
     /// Device address of the shared::ProbeFieldRecord.
     glm::uvec2 address() const { return table_.addressWords(); }
     const GpuProbeStatistics& statistics() const { return statistics_; }  ///< fixed after load()
 
   private:
-    GpuProbes(Buffer table, std::vector<Buffer> blocks) : table_(std::move(table)), blocks_(std::move(blocks)) {}
+    GpuProbes(Buffer table, std::vector<Buffer> blocks)
+        : table_(std::move(table)), blocks_(std::move(blocks)) {}
 
     Buffer table_;                ///< record, entries, proximity grid
     std::vector<Buffer> blocks_;  ///< maps

@@ -2,8 +2,9 @@
 //
 //     OctreeAsset(s) -> [Scene::build] -> device buffers -> shaders/octree_trace.glsl
 //
-// The layout is that of shaders/shared/scene.glsl.h: a BVH over the instances, and one contiguous block for each model,
-// its octree read two levels at a time (docs/decisions/012-wide-tree.md). World units are metres, right-handed, +Y up.
+// The layout is that of shaders/shared/scene.glsl.h: a BVH over the instances, and one contiguous block for
+// each model, its octree read two levels at a time (docs/decisions/012-wide-tree.md). World units are metres,
+// right-handed, +Y up.
 #pragma once
 
 #include <memory>
@@ -46,8 +47,8 @@ struct SceneStatistics {
     std::uint64_t valueBytes = 0;     ///< materials of single voxels
     std::uint64_t paletteBytes = 0;   ///< regions' palettes
     std::uint64_t instanceBytes = 0;  ///< instances, models, materials, BVH
-    bool hasGlass = false;    ///< materials that let light through
-    bool hasMirrors = false;  ///< materials that mirror: metal and plastic
+    bool hasGlass = false;            ///< materials that let light through
+    bool hasMirrors = false;          ///< materials that mirror: metal and plastic
     double buildMs = 0.0;             ///< CPU time of layout, BVH and upload
     std::uint64_t totalBytes() const {
         return nodeBytes + lodBytes + valueBytes + paletteBytes + instanceBytes;
@@ -62,9 +63,9 @@ class Scene {
     /// "scene-flat-instance". Errors: BadReference (instance of a model that does not exist),
     /// UnsupportedFeature (octree deeper than 23 levels), GpuOutOfMemory, GpuLost.
     ///
-    /// Models that `known` has on this device are shared with it instead of laid out and uploaded again, as long as their
-    /// materials begin at the same place of the scene's list: moving, adding and copying cost instances and BVH only. The
-    /// assets that `known` was built from must still be there.
+    /// Models that `known` has on this device are shared with it instead of laid out and uploaded again, as
+    /// long as their materials begin at the same place of the scene's list: moving, adding and copying cost
+    /// instances and BVH only. The assets that `known` was built from must still be there.
     static Result<Scene> build(Device& device, std::span<const ScenePart> parts, Diagnostics& diagnostics,
                                const Scene* known = nullptr);
 

@@ -23,9 +23,9 @@ inline constexpr std::size_t kProbeTierCount = 5;  ///< tiers of ProbeTier, None
 std::string_view toString(ProbeTier tier);
 /// The light of a point, and where it came from.
 struct ProbeLookup {
-    glm::vec3 indirect{0.0f};  ///< I = E / pi, linear RGB
+    glm::vec3 indirect{0.0f};          ///< I = E / pi, linear RGB
     ProbeTier tier = ProbeTier::None;  ///< which lookup gave the value
-    glm::vec3 weights{0.0f};   ///< of texels, compact and nearest; their sum is 1, or 0 where tier is None
+    glm::vec3 weights{0.0f};  ///< of texels, compact and nearest; their sum is 1, or 0 where tier is None
 };
 /// A ray through the light field.
 struct FieldRay {
@@ -35,7 +35,7 @@ struct FieldRay {
 };
 /// What the field says of a ray.
 enum class FieldAnswer : std::uint8_t {
-    Miss,     ///< certain
+    Miss,  ///< certain
     Hit,
     Unknown,  ///< behind what the probes see
     Filled,   ///< unknown, answered by the nearest probe's view
@@ -56,7 +56,7 @@ struct FieldTrace {
     std::uint32_t lowSteps = 0;                 ///< through the coarse depth maps
     std::uint32_t highSteps = 0;                ///< texel by texel
     std::uint32_t probesAsked = 0;              ///< how many were traced
-    std::uint32_t capped = 0;                   ///< walks that were given up; they count as unknown
+    std::uint32_t stepLimitReached = 0;         ///< walks that were given up; they count as unknown
 };
 /// Runs lookups and traces over whole arrays: for tests and measurements. Not thread-safe.
 class ProbeQuery {
@@ -67,8 +67,9 @@ class ProbeQuery {
     /// Errors of both: GpuOutOfMemory, GpuLost. Rays need a field with depth maps.
     Result<std::vector<ProbeLookup>> lookUp(Device& device, const GpuProbes& probes,
                                             std::span<const ProbePoint> points) const;
-    Result<std::vector<FieldTrace>> trace(Device& device, const GpuProbes& probes, std::span<const FieldRay> rays,
-                                          FieldTracing tracing) const;  ///< One a ray, in order. Errors: as above.
+    Result<std::vector<FieldTrace>> trace(
+        Device& device, const GpuProbes& probes, std::span<const FieldRay> rays,
+        FieldTracing tracing) const;  ///< One a ray, in order. Errors: as above.
 
   private:
     explicit ProbeQuery(Program program) : program_(std::move(program)) {}

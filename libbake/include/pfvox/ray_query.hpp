@@ -13,8 +13,8 @@ namespace pfvox::gpu {
 
 /// Any non-zero direction; distances count in its lengths.
 struct GpuRay {
-    glm::vec3 origin{0.0f};  ///< metres
-    glm::vec3 direction{0.0f, 0.0f, -1.0f};  ///< any length but 0
+    glm::vec3 origin{0.0f};                          ///< metres
+    glm::vec3 direction{0.0f, 0.0f, -1.0f};          ///< any length but 0
     float tMax = std::numeric_limits<float>::max();  ///< in lengths of the direction
     float cone = 0.0f;  ///< width in parts of the distance: finer levels of detail are not told apart
 };
@@ -26,17 +26,18 @@ struct GpuHit {
         0;                   ///< in the order of the scene's parts and their instances, hidden ones counted
     glm::ivec3 voxel{0};     ///< in the model
     glm::vec3 normal{0.0f};  ///< in the world, unit length, towards the ray
-    std::uint32_t material = 0;  ///< in the materials of all parts, one after the other
-    std::uint8_t face = 0;       ///< of the voxel: 0..5 = -x +x -y +y -z +z, 6 = the ray starts inside it
-    std::uint32_t steps = 0;     ///< iterations of the octree loop
-    bool capped = false;         ///< given up in some instance after too many steps; never in valid data
-    std::uint32_t lodColor = 0;  ///< of a level of detail: R, G, B (sRGB), coverage, R in the low byte; else 0
-    std::int32_t cellLog2 = 0;   ///< edge of the cell that was hit = 2^cellLog2 voxels
+    std::uint32_t material = 0;     ///< in the materials of all parts, one after the other
+    std::uint8_t face = 0;          ///< of the voxel: 0..5 = -x +x -y +y -z +z, 6 = the ray starts inside it
+    std::uint32_t steps = 0;        ///< iterations of the octree loop
+    bool stepLimitReached = false;  ///< given up in some instance after too many steps; never in valid data
+    std::uint32_t lodColor =
+        0;                      ///< of a level of detail: R, G, B (sRGB), coverage, R in the low byte; else 0
+    std::int32_t cellLog2 = 0;  ///< edge of the cell that was hit = 2^cellLog2 voxels
 };
 /// What is asked of a ray.
 enum class RayMode : std::uint8_t {
     ClosestHit,
-    AnyHit,  ///< only `hit`, `steps` and `capped` are set
+    AnyHit,  ///< only `hit`, `steps` and `stepLimitReached` are set
 };
 /// What cast() gives.
 struct RayBatch {

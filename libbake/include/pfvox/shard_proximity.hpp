@@ -14,9 +14,9 @@ namespace pfvox {
 /// Whether the shards hold every probe of their grid once.
 bool isWholeGrid(std::span<const ProbeFileReader> shards);
 
-/// `shards` in any order; precondition: isWholeGrid(shards). Memory holds the maps of as many probes as there are
-/// threads. Errors: BadStructure (the shards were baked from another scene, or have no depth maps), those of
-/// ProbeFileReader::readProbe.
+/// `shards` in any order; precondition: isWholeGrid(shards). Memory holds the maps of as many probes as there
+/// are threads. Errors: BadStructure (the shards were baked from another scene, or have no depth maps), those
+/// of ProbeFileReader::readProbe.
 Result<ProximityBuild> proximityOfShards(const LoadedScene& scene, std::span<const ProbeFileReader> shards);
 
 }  // namespace pfvox

@@ -56,7 +56,7 @@ struct VerifiedPicture {
     double gpuMs = 0.0;                 ///< of both pictures
 };
 
-/// Some of the pixels of a picture. Shares are of the mean of their reference, all channels.
+/// Some of the pixels of a picture. Fractions are of the mean of their reference, all channels.
 struct VerifyPart {
     std::uint64_t pixels = 0;    ///< that it is about
     double meanReference = 0.0;  ///< of all channels
@@ -78,13 +78,13 @@ inline constexpr std::size_t kMaterialTypeCount = 7;
 
 /// How far the probes are from the reference, over the pixels with surface.
 struct VerifyScore {
-    std::uint64_t surfacePixels = 0;                        ///< pixels that the rest is about
-    std::uint64_t withoutValue = 0;                         ///< of these: no tier, or not finite
-    std::array<double, gpu::kProbeTierCount> tierShares{};  ///< of surface pixels, by tier
-    VerifyPart all;                                         ///< every pixel with surface
-    std::array<VerifyPart, gpu::kProbeTierCount> byTier;    ///< those of one tier
-    std::array<VerifyPart, kMaterialTypeCount> byMaterial;  ///< of the surface that is seen
-    double exposure = 1.0;                                  ///< for PSNR and FLIP: 0.5 / mean
+    std::uint64_t surfacePixels = 0;                           ///< pixels that the rest is about
+    std::uint64_t withoutValue = 0;                            ///< of these: no tier, or not finite
+    std::array<double, gpu::kProbeTierCount> tierFractions{};  ///< of surface pixels, by tier
+    VerifyPart all;                                            ///< every pixel with surface
+    std::array<VerifyPart, gpu::kProbeTierCount> byTier;       ///< those of one tier
+    std::array<VerifyPart, kMaterialTypeCount> byMaterial;     ///< of the surface that is seen
+    double exposure = 1.0;                                     ///< for PSNR and FLIP: 0.5 / mean
     double psnrDecibel = 0.0;  ///< of exposed values clamped to [0, 1]; 999 when they are equal
     double meanFlip = 0.0;     ///< over pixels with surface
     double noiseFlip = 0.0;    ///< what the noise of the reference alone makes of it

@@ -41,8 +41,14 @@ class Baker {
   public:
     Baker(gpu::Device& device, const LoadedScene& scene, const BakeSettings& settings, BakeObserver& observer,
           Diagnostics& diagnostics)
-        : device_(device), scene_(scene), settings_(settings), observer_(observer), diagnostics_(diagnostics),
-          info_(fieldInfo(scene, settings, device.info())), models_(placedModels(scene)), solids_(models_) {}
+        : device_(device),
+          scene_(scene),
+          settings_(settings),
+          observer_(observer),
+          diagnostics_(diagnostics),
+          info_(fieldInfo(scene, settings, device.info())),
+          models_(placedModels(scene)),
+          solids_(models_) {}
 
     Result<BakeReport> run(const std::filesystem::path& output) {
         const ContentKey key = bakeContentKey(scene_, settings_, device_.info());
@@ -67,8 +73,8 @@ class Baker {
                                        .replaceReadOnly = settings_.force};
         PFVOX_TRY(ProbeFileWriter, writer, ProbeFileWriter::open(output, info_, write, diagnostics_));
         PFVOX_CHECK(bakeAll(tracer, writer));
-        PFVOX_TRY(const std::uint64_t, capped, tracer.cappedRays());
-        report_.cappedRays = capped;
+        PFVOX_TRY(const std::uint64_t, given, tracer.stepLimitRays());
+        report_.stepLimitRays = given;
         PFVOX_CHECK(finish(writer, output));
         report_.totalMs = 1e3 * secondsSince(started_);
         return report_;
@@ -88,7 +94,8 @@ class Baker {
     bool hasGlass() const {
         for (const PlacedModel& placed : models_)
             for (const Material& m : placed.asset->materials)
-                if ((m.type == MaterialType::Glass || m.type == MaterialType::Media || m.type == MaterialType::Blend) &&
+                if ((m.type == MaterialType::Glass || m.type == MaterialType::Media ||
+                     m.type == MaterialType::Blend) &&
                     m.transparency > 0.0f && m.emissionStrength == 0.0f)
                     return true;
         return false;
@@ -102,10 +109,11 @@ class Baker {
         const glm::dvec3 outside = glm::max(low - scene_.bounds.min, scene_.bounds.max - high);
         const double most = std::max({outside.x, outside.y, outside.z});
         if (most <= 1e-6) return;
-        diagnostics_.warn("bake-grid-outside",
-                          fmt::format("models reach {:.3g} m further than a step around the probe grid: light there is "
-                                      "that of the irradiance maps of the nearest probes",
-                                      most));
+        diagnostics_.warn(
+            "bake-grid-outside",
+            fmt::format("models reach {:.3g} m further than a step around the probe grid: light there is "
+                        "that of the irradiance maps of the nearest probes",
+                        most));
     }
 
     // --- Probes ---
@@ -156,9 +164,11 @@ class Baker {
             ProbeRecord& record = records_[group[i] - info_.range.first];
             record = {.offset = placements[i].offset, .state = placements[i].state};
             if (record.isActive())
-                traced.push_back({.position = info_.grid.pointOf(group[i]) + record.offset, .index = group[i]});
+                traced.push_back(
+                    {.position = info_.grid.pointOf(group[i]) + record.offset, .index = group[i]});
             else
-                PFVOX_CHECK(writer.append(group[i], {.record = record, .inputHash = probeHash(field, group[i])}));
+                PFVOX_CHECK(
+                    writer.append(group[i], {.record = record, .inputHash = probeHash(field, group[i])}));
         }
         if (!traced.empty()) {
             PFVOX_CHECK(tracer.see(traced, workOf(report_.geometry)));
@@ -171,11 +181,12 @@ class Baker {
             const std::uint32_t probe = traced[i].index;
             ProbeRecord& record = records_[probe - info_.range.first];
             if (maps.tiles.meanError) record.error = static_cast<float>(*maps.tiles.meanError);
-            record.cappedTileShare = static_cast<float>(maps.tiles.cappedTileShare);
+            record.noisyTileFraction = static_cast<float>(maps.tiles.noisyTileFraction);
             samples_ += maps.tiles.samples;
             surfaceTexels_ += maps.tiles.surfaceTexels;
             background.tasks.run([this, probe, record, input = probeHash(field, probe),
-                                  shared = std::make_shared<const TracedProbe>(std::move(maps)), &writer, &background] {
+                                  shared = std::make_shared<const TracedProbe>(std::move(maps)), &writer,
+                                  &background] {
                 const Result<void> written = writeOne(probe, input, record, *shared, writer, background);
                 if (written) return;
                 const std::scoped_lock lock(background.mutex);
@@ -190,9 +201,10 @@ class Baker {
     Result<void> writeOne(std::uint32_t probe, const ContentKey& input, const ProbeRecord& record,
                           const TracedProbe& traced, ProbeFileWriter& writer, Background& background) const {
         const auto began = Clock::now();
-        ProbeData data = makeMaps(traced, {.resolution = info_.resolution,
-                                           .momentRange = info_.grid.momentRange(),
-                                           .filterVoxelMetres = settings_.filter ? finestVoxelMetres(models_) : 0.0f});
+        ProbeData data =
+            makeMaps(traced, {.resolution = info_.resolution,
+                              .momentRange = info_.grid.momentRange(),
+                              .filterVoxelMetres = settings_.filter ? finestVoxelMetres(models_) : 0.0f});
         const double mapsMs = 1e3 * secondsSince(began);
         data.record = record;
         data.inputHash = input;
@@ -226,7 +238,8 @@ class Baker {
                                    static_cast<double>(progress.probes - progress.probesDone);
         observer_.progress(progress);
         if (!observer_.stopRequested()) return {};
-        return fail(ErrorCode::Cancelled, "stopped; what is finished is kept in the journal, and resuming takes it");
+        return fail(ErrorCode::Cancelled,
+                    "stopped; what is finished is kept in the journal, and resuming takes it");
     }
 
     // --- After ---
@@ -249,10 +262,10 @@ class Baker {
     void count(std::span<const ProbeRecord> records) {
         report_.counts = countProbes(records);
         double errors = 0.0;
-        double capped = 0.0;
+        double noisy = 0.0;
         std::uint64_t judged = 0;
         for (const ProbeRecord& record : records) {
-            capped += static_cast<double>(record.cappedTileShare);
+            noisy += static_cast<double>(record.noisyTileFraction);
             if (!record.error) continue;
             const auto error = static_cast<double>(*record.error);
             errors += error;
@@ -261,12 +274,13 @@ class Baker {
         }
         if (judged != 0) report_.meanError = errors / static_cast<double>(judged);
         if (info_.settings.isAdaptive() && report_.counts.active != 0)
-            report_.cappedTileShare = capped / static_cast<double>(report_.counts.active);
+            report_.noisyTileFraction = noisy / static_cast<double>(report_.counts.active);
     }
 
     Result<ProximityGrid> makeProximity(const ProbeFileWriter& writer, std::span<const ProbeRecord> records) {
         const auto began = Clock::now();
-        const ProximityGrid shape = proximityShape(info_.grid, scene_.scene.probes.proximityCells, scene_.bounds);
+        const ProximityGrid shape =
+            proximityShape(info_.grid, scene_.scene.probes.proximityCells, scene_.bounds);
         const CellSurfaces surfaces = sortIntoCells(surfaceSamples(models_, shape), shape);
         const auto depthNormal = [&](std::uint32_t probe) -> Result<std::vector<std::uint32_t>> {
             PFVOX_TRY(ProbeData, data, writer.readProbe(probe));
@@ -281,10 +295,11 @@ class Baker {
         report_.proximity = built.report;
         report_.proximityMs = 1e3 * secondsSince(began);
         if (built.report.uncoveredCells != 0) {
-            diagnostics_.note("bake-uncovered-cells",
-                              fmt::format("{} of {} cells with surface are seen by no probe: light there comes from "
-                                          "the irradiance maps",
-                                          built.report.uncoveredCells, built.report.surfaceCells));
+            diagnostics_.note(
+                "bake-uncovered-cells",
+                fmt::format("{} of {} cells with surface are seen by no probe: light there comes from "
+                            "the irradiance maps",
+                            built.report.uncoveredCells, built.report.surfaceCells));
         }
         return std::move(built.grid);
     }

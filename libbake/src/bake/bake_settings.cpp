@@ -13,19 +13,24 @@ namespace {
 
 Result<void> checkResolution(const ProbeResolution& resolution) {
     if (resolution.edgeOf(ProbeLayer::DepthNormal) % shared::kMinDepthBlock != 0)
-        return fail(ErrorCode::BadValue,
-                    fmt::format("depth maps of {} texels: the edge is a multiple of 16", resolution.depth));
-    for (const ProbeLayer layer : {ProbeLayer::DepthNormal, ProbeLayer::Light, ProbeLayer::Irradiance, ProbeLayer::Moments})
-        if (resolution.edgeOf(layer) > kMaxProbeEdge)
-            return fail(ErrorCode::BadValue, fmt::format("{} maps have at most {} texels along an edge", toString(layer), kMaxProbeEdge));
+        return fail(
+            ErrorCode::BadValue,
+            fmt::format("depth maps of {} texels: the resolution is a multiple of 16", resolution.depth));
+    for (const ProbeLayer layer :
+         {ProbeLayer::DepthNormal, ProbeLayer::Light, ProbeLayer::Irradiance, ProbeLayer::Moments})
+        if (resolution.edgeOf(layer) > kMaxProbeResolution)
+            return fail(ErrorCode::BadValue, fmt::format("{} maps have at most {} texels a side",
+                                                         toString(layer), kMaxProbeResolution));
     if (resolution.bytesPerProbe() == 0) return fail(ErrorCode::BadValue, "a probe has at least one map");
-    const TracedEdges edges = tracedEdges(resolution);
-    if (edges.light % shared::kTileEdge != 0)
-        return fail(ErrorCode::BadValue, fmt::format("light maps of {} texels: the edge is a multiple of 8", edges.light));
-    if (edges.depth % edges.light != 0 || edges.depth / edges.light > shared::kMaxBlockEdge)
+    const TracedResolution traced = tracedResolution(resolution);
+    if (traced.light % shared::kTileEdge != 0)
         return fail(ErrorCode::BadValue,
-                    fmt::format("depth maps of {} and light maps of {} texels: depth is 1, 2, 3 or 4 times light",
-                                edges.depth, edges.light));
+                    fmt::format("light maps of {} texels: the resolution is a multiple of 8", traced.light));
+    if (traced.depth % traced.light != 0 || traced.depth / traced.light > shared::kMaxBlockEdge)
+        return fail(
+            ErrorCode::BadValue,
+            fmt::format("depth maps of {} and light maps of {} texels: depth is 1, 2, 3 or 4 times light",
+                        traced.depth, traced.light));
     return {};
 }
 
@@ -39,9 +44,10 @@ Result<void> checkSettings(const BakeSettings& settings, const ProbeGrid& grid) 
     PFVOX_CHECK(checkResolution(settings.resolution));
     if (!isBatches(settings.minSamples) || !isBatches(settings.maxSamples) ||
         settings.maxSamples < settings.minSamples || settings.maxSamples > (1u << 24))
-        return fail(ErrorCode::BadValue,
-                    fmt::format("samples from {} to {}: both are multiples of 16, the first not above the second",
-                                settings.minSamples, settings.maxSamples));
+        return fail(
+            ErrorCode::BadValue,
+            fmt::format("samples from {} to {}: both are multiples of 16, the first not above the second",
+                        settings.minSamples, settings.maxSamples));
     if (!(settings.noiseTarget >= 0.0f) || !std::isfinite(settings.noiseTarget))
         return fail(ErrorCode::BadValue, "the noise target is a number from 0");
     if (!(settings.noiseFloor > 0.0f) || !std::isfinite(settings.noiseFloor))
@@ -50,7 +56,8 @@ Result<void> checkSettings(const BakeSettings& settings, const ProbeGrid& grid) 
         return fail(ErrorCode::BadValue, "the seconds of a dispatch are a number above 0");
     if (settings.zstdLevel < 1 || settings.zstdLevel > 19)
         return fail(ErrorCode::BadValue, fmt::format("zstd level {}: it is 1 to 19", settings.zstdLevel));
-    if (settings.range && (settings.range->first >= settings.range->end || settings.range->end > grid.probeCount()))
+    if (settings.range &&
+        (settings.range->first >= settings.range->end || settings.range->end > grid.probeCount()))
         return fail(ErrorCode::BadValue,
                     fmt::format("probes {} to {}: a range is not empty and within the grid's {} probes",
                                 settings.range->first, settings.range->end, grid.probeCount()));

@@ -83,10 +83,12 @@ ContentKey sceneContentHash(const LoadedScene& scene) {
     Hasher hasher;
     const Sun& sun = scene.scene.sun;
     const Sky& sky = scene.scene.sky;
-    for (const glm::dvec3& v : {sun.direction, sun.irradiance, sky.zenith, sky.horizon, sky.ground}) hasher.add(v);
+    for (const glm::dvec3& v : {sun.direction, sun.irradiance, sky.zenith, sky.horizon, sky.ground})
+        hasher.add(v);
     std::vector<std::pair<const OctreeAsset*, ContentKey>> known;
     for (const bake::PlacedModel& placed : bake::placedModels(scene)) {
-        if (known.empty() || known.back().first != placed.asset) known.emplace_back(placed.asset, assetHash(*placed.asset));
+        if (known.empty() || known.back().first != placed.asset)
+            known.emplace_back(placed.asset, assetHash(*placed.asset));
         hasher.add(known.back().second);
         hasher.add(static_cast<std::uint64_t>(placed.model - placed.asset->models.data()));
         for (int column = 0; column < 4; ++column) hasher.add(glm::dvec3(placed.worldFromModel[column]));
@@ -94,11 +96,14 @@ ContentKey sceneContentHash(const LoadedScene& scene) {
     return hasher.key();
 }
 
-ContentKey bakeContentKey(const LoadedScene& scene, const BakeSettings& settings, const gpu::DeviceInfo& device) {
+ContentKey bakeContentKey(const LoadedScene& scene, const BakeSettings& settings,
+                          const gpu::DeviceInfo& device) {
     const ProbeFieldInfo info = bake::fieldInfo(scene, settings, device);
     Hasher hasher;
     hasher.add(bake::fieldHash(info));
-    hasher.add(scene.scene.probes.proximityCells).add(std::uint8_t{settings.proximity}).add(std::string_view(settings.toolName));
+    hasher.add(scene.scene.probes.proximityCells)
+        .add(std::uint8_t{settings.proximity})
+        .add(std::string_view(settings.toolName));
     return hasher.key();
 }
 
@@ -106,8 +111,9 @@ namespace bake {
 
 ContentKey shaderHash() {
     Hasher hasher;
-    for (const auto& shader : {shaders::kBakeGeometry, shaders::kBakeTiles, shaders::kBakeBegin, shaders::kBakeCast,
-                               shaders::kBakeScatter, shaders::kBakeQueue, shaders::kBakeGather, shaders::kBakeFinish})
+    for (const auto& shader :
+         {shaders::kBakeGeometry, shaders::kBakeTiles, shaders::kBakeBegin, shaders::kBakeCast,
+          shaders::kBakeScatter, shaders::kBakeQueue, shaders::kBakeGather, shaders::kBakeFinish})
         hasher.addAll(shader);
     return hasher.key();
 }
@@ -139,7 +145,8 @@ ContentKey probeHash(const ContentKey& field, std::uint32_t probe) {
     return Hasher{}.add(field).add(probe).key();
 }
 
-ProbeFieldInfo fieldInfo(const LoadedScene& scene, const BakeSettings& settings, const gpu::DeviceInfo& device) {
+ProbeFieldInfo fieldInfo(const LoadedScene& scene, const BakeSettings& settings,
+                         const gpu::DeviceInfo& device) {
     ProbeFieldInfo info;
     info.grid = scene.probes;
     const auto all = static_cast<std::uint32_t>(scene.probes.probeCount());
@@ -155,7 +162,7 @@ ProbeFieldInfo fieldInfo(const LoadedScene& scene, const BakeSettings& settings,
     info.depth = depthEncodingFor(low, high);
     info.lightContent = kLightOfSky | kLightOfEmitters | kLightOfBouncedSun | kLightOfSpecular;
     info.settings = {.seed = settings.seed,
-                     .tracedEdge = tracedEdges(settings.resolution).light,
+                     .tracedResolution = tracedResolution(settings.resolution).light,
                      .minSamples = settings.minSamples,
                      .maxSamples = settings.noiseTarget > 0.0f ? settings.maxSamples : settings.minSamples,
                      .maxBounces = settings.maxBounces.value_or(kUnlimitedBounces),

@@ -17,6 +17,7 @@ ContentKey fieldHash(const ProbeFieldInfo& info);
 ContentKey probeHash(const ContentKey& field, std::uint32_t probe);
 
 /// Header of the file that a bake makes.
-ProbeFieldInfo fieldInfo(const LoadedScene& scene, const BakeSettings& settings, const gpu::DeviceInfo& device);
+ProbeFieldInfo fieldInfo(const LoadedScene& scene, const BakeSettings& settings,
+                         const gpu::DeviceInfo& device);
 
 }  // namespace pfvox::bake

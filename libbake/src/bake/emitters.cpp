@@ -46,21 +46,21 @@ glm::dvec3 emittedRadiance(const Material& material) {
 
 void makeAliasTable(std::span<const double> weights, std::span<shared::EmitterFace> faces) {
     const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
-    std::vector<double> share;
+    std::vector<double> fraction;
     std::vector<std::uint32_t> small;
     std::vector<std::uint32_t> large;
     for (std::uint32_t i = 0; i < weights.size(); ++i) {
-        share.push_back(weights[i] / sum * static_cast<double>(weights.size()));
-        (share[i] < 1.0 ? small : large).push_back(i);
+        fraction.push_back(weights[i] / sum * static_cast<double>(weights.size()));
+        (fraction[i] < 1.0 ? small : large).push_back(i);
     }
     while (!small.empty() && !large.empty()) {
         const std::uint32_t poor = small.back();
         const std::uint32_t rich = large.back();
         small.pop_back();
-        faces[poor].threshold = static_cast<float>(share[poor]);
+        faces[poor].threshold = static_cast<float>(fraction[poor]);
         faces[poor].alias = rich;
-        share[rich] -= 1.0 - share[poor];
-        if (share[rich] < 1.0) {
+        fraction[rich] -= 1.0 - fraction[poor];
+        if (fraction[rich] < 1.0) {
             large.pop_back();
             small.push_back(rich);
         }

@@ -20,7 +20,8 @@ class LeafWalk {
         std::uint32_t child = node::innerMask(d) != 0 ? region_.tree.firstChild(index) : 0;
         for (std::uint32_t rest = node::validMask(d); rest != 0; rest &= rest - 1) {
             const auto slot = static_cast<std::uint32_t>(std::countr_zero(rest));
-            const glm::ivec3 at = corner + (glm::ivec3(slot & 1u, slot >> 1 & 1u, slot >> 2) << static_cast<int>(level));
+            const glm::ivec3 at =
+                corner + (glm::ivec3(slot & 1u, slot >> 1 & 1u, slot >> 2) << static_cast<int>(level));
             const std::uint32_t own = valueOf(index, slot, value);
             if ((node::leafMask(d) >> slot & 1u) == 0) {
                 node(child++, at, level - 1, own);
@@ -67,7 +68,8 @@ class HidingVoxels {
         const glm::ivec3 p = voxel - box_.min;
         return static_cast<std::size_t>(p.x) +
                static_cast<std::size_t>(size_.x) *
-                   (static_cast<std::size_t>(p.y) + static_cast<std::size_t>(size_.y) * static_cast<std::size_t>(p.z));
+                   (static_cast<std::size_t>(p.y) +
+                    static_cast<std::size_t>(size_.y) * static_cast<std::size_t>(p.z));
     }
     void fill(const Leaf& leaf) {
         for (int z = 0; z < leaf.edge; ++z)

@@ -34,8 +34,8 @@ struct FaceFilter {
     std::vector<bool> hides;   ///< that touch none of these
 };
 
-/// Calls `visit` for each wanted face whose neighbour is empty or does not hide it; always in the same order. Takes
-/// 2 MB and time by the surface of leaves, not by their volume.
+/// Calls `visit` for each wanted face whose neighbor is empty or does not hide it; always in the same order.
+/// Takes 2 MB and time by the surface of leaves, not by their volume.
 void forEachExposedFace(const OctreeModel& model, const FaceFilter& filter,
                         const std::function<void(const VoxelFace&)>& visit);
 

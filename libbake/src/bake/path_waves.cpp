@@ -11,11 +11,12 @@ namespace {
 
 constexpr std::uint32_t kStepsPerSubmit = 12;
 constexpr std::uint64_t kFirstItems = 512;
-// Some sixty vertices until the last path of a wave has ended, most of them of few paths: the larger the wave, the less
-// these count.
+// Some sixty vertices until the last path of a wave has ended, most of them of few paths: the larger the
+// wave, the less these count.
 constexpr std::uint64_t kMostItems = 65536;
-constexpr std::uint64_t kBytesPerPath = sizeof(shared::PathState) + sizeof(glm::vec4) + sizeof(shared::PathHit) +
-                                        2 * sizeof(shared::ShadowRay) + 2 * sizeof(std::uint32_t);
+constexpr std::uint64_t kBytesPerPath = sizeof(shared::PathState) + sizeof(glm::vec4) +
+                                        sizeof(shared::PathHit) + 2 * sizeof(shared::ShadowRay) +
+                                        2 * sizeof(std::uint32_t);
 
 double secondsSince(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -34,7 +35,8 @@ class PathWaves::Recording {
   public:
     Recording(glm::uvec2 wave, const gpu::Buffer& control) : wave_(wave), control_(&control) {}
 
-    void groups(const gpu::Program& program, std::uint32_t count, std::uint32_t groupCount, std::uint32_t set = 0) {
+    void groups(const gpu::Program& program, std::uint32_t count, std::uint32_t groupCount,
+                std::uint32_t set = 0) {
         const glm::uvec3 groups(std::min(groupCount, shared::kBakeRowGroups),
                                 (groupCount + shared::kBakeRowGroups - 1) / shared::kBakeRowGroups, 1);
         add({.program = &program, .groups = groups}, count, set);
@@ -45,7 +47,8 @@ class PathWaves::Recording {
         add({.program = &program, .groupsFrom = control_, .groupsAtBytes = at}, 0, set);
     }
     Result<double> run(gpu::Device& device) {
-        for (std::size_t i = 0; i < dispatches_.size(); ++i) dispatches_[i].pushConstants = gpu::bytesOf(pushes_[i]);
+        for (std::size_t i = 0; i < dispatches_.size(); ++i)
+            dispatches_[i].pushConstants = gpu::bytesOf(pushes_[i]);
         PFVOX_TRY(const double, gpuMs, device.run(dispatches_));
         dispatches_.clear();
         pushes_.clear();
@@ -55,7 +58,13 @@ class PathWaves::Recording {
   private:
     void add(const gpu::Dispatch& dispatch, std::uint32_t count, std::uint32_t set) {
         dispatches_.push_back(dispatch);
-        pushes_.push_back({.wave = wave_, .first = 0, .count = count, .set = set, .reserved0 = 0, .reserved1 = 0, .reserved2 = 0});
+        pushes_.push_back({.wave = wave_,
+                           .first = 0,
+                           .count = count,
+                           .set = set,
+                           .reserved0 = 0,
+                           .reserved1 = 0,
+                           .reserved2 = 0});
     }
 
     glm::uvec2 wave_;
@@ -66,8 +75,12 @@ class PathWaves::Recording {
 
 PathWaves::PathWaves(gpu::Device& device, const WaveOptions& options, Programs programs, Buffers buffers,
                      std::size_t items)
-    : device_(&device), options_(options), programs_(std::move(programs)), buffers_(std::move(buffers)),
-      mostItems_(items), pace_(kFirstItems, items) {}
+    : device_(&device),
+      options_(options),
+      programs_(std::move(programs)),
+      buffers_(std::move(buffers)),
+      mostItems_(items),
+      pace_(kFirstItems, items) {}
 
 Result<PathWaves::Programs> PathWaves::createPrograms(gpu::Device& device, const WaveOptions& options) {
     const std::uint32_t glass = options.hasGlass ? 1 : 0;
@@ -111,17 +124,16 @@ Result<PathWaves::Buffers> PathWaves::createBuffers(gpu::Device& device, std::ui
     PFVOX_TRY(gpu::Buffer, emitterRays, create(paths * sizeof(shared::ShadowRay), "rays to emitters"));
     PFVOX_TRY(gpu::Buffer, control, create(sizeof(shared::WaveControl), "bake control"));
     PFVOX_CHECK(device.upload(control, 0, gpu::bytesOf(shared::WaveControl{})));
-    return Buffers{std::move(itemList), std::move(runs),
-                   std::move(states),   std::move(arrived),
-                   std::move(hits),     {std::move(rays0), std::move(rays1)},
-                   std::move(sunRays),  std::move(emitterRays),
-                   std::move(control)};
+    return Buffers{std::move(itemList), std::move(runs),        std::move(states),
+                   std::move(arrived),  std::move(hits),        {std::move(rays0), std::move(rays1)},
+                   std::move(sunRays),  std::move(emitterRays), std::move(control)};
 }
 
 /// An eighth of the device's memory at most.
 std::uint64_t PathWaves::itemsFor(const gpu::DeviceInfo& device) {
     if (device.kind == gpu::DeviceKind::Software) return kLeastItems;
-    return std::clamp(device.localMemoryBytes / 8 / (kBytesPerPath * shared::kItemPaths), kLeastItems, kMostItems);
+    return std::clamp(device.localMemoryBytes / 8 / (kBytesPerPath * shared::kItemPaths), kLeastItems,
+                      kMostItems);
 }
 
 Result<PathWaves> PathWaves::create(gpu::Device& device, const WaveOptions& options, std::uint64_t items) {
@@ -158,8 +170,12 @@ Result<void> PathWaves::trace(std::span<const TileWork> work, glm::uvec2 wave, c
         for (std::uint32_t batch = 0; batch < tile.batches;) {
             const std::size_t room = pace_.size() - items.size();
             const auto count = static_cast<std::uint32_t>(std::min<std::size_t>(room, tile.batches - batch));
-            runs.push_back({.firstItem = static_cast<std::uint32_t>(items.size()), .itemCount = count, .tile = tile.tile, .reserved = 0});
-            for (std::uint32_t i = 0; i < count; ++i) items.push_back({tile.tile, tile.firstBatch + batch + i});
+            runs.push_back({.firstItem = static_cast<std::uint32_t>(items.size()),
+                            .itemCount = count,
+                            .tile = tile.tile,
+                            .reserved = 0});
+            for (std::uint32_t i = 0; i < count; ++i)
+                items.push_back({tile.tile, tile.firstBatch + batch + i});
             batch += count;
             if (items.size() >= pace_.size()) PFVOX_CHECK(traceThese());
         }
@@ -180,15 +196,16 @@ std::uint32_t PathWaves::recordSteps(Recording& recording, std::uint32_t steps, 
     return set;
 }
 
-Result<BakePass> PathWaves::traceWave(std::span<const glm::uvec2> items, std::span<const shared::GatherRun> runs,
-                                      glm::uvec2 wave) {
+Result<BakePass> PathWaves::traceWave(std::span<const glm::uvec2> items,
+                                      std::span<const shared::GatherRun> runs, glm::uvec2 wave) {
     PFVOX_CHECK(device_->upload(buffers_.items, 0, std::as_bytes(items)));
     PFVOX_CHECK(device_->upload(buffers_.runs, 0, std::as_bytes(runs)));
     const auto itemCount = static_cast<std::uint32_t>(items.size());
     const auto runCount = static_cast<std::uint32_t>(runs.size());
     Recording recording(wave, buffers_.control);
     std::uint32_t set = emptySet_;
-    recording.groups(programs_.begin, itemCount, itemCount * (shared::kItemPaths / shared::kBakeGroupSize), set);
+    recording.groups(programs_.begin, itemCount, itemCount * (shared::kItemPaths / shared::kBakeGroupSize),
+                     set);
     recording.groups(programs_.queue, 1, 1, set);
     if (options_.hasEmitters) recording.queued(programs_.castEmitters, shared::kQueueEmitters, set);
 
@@ -225,9 +242,9 @@ Result<shared::WaveControl> PathWaves::readControl() {
     return control;
 }
 
-Result<std::uint64_t> PathWaves::cappedRays() {
+Result<std::uint64_t> PathWaves::stepLimitRays() {
     PFVOX_TRY(const shared::WaveControl, control, readControl());
-    return control.cappedRays;
+    return control.stepLimitRays;
 }
 
 }  // namespace pfvox::bake

@@ -1,7 +1,8 @@
-// Paths by the million, one vertex of all of them at a time (Laine, Karras and Aila 2013, "Megakernels Considered
-// Harmful"): small programs and full subgroups, where one program of whole paths has neither.
+// Paths by the million, one vertex of all of them at a time (Laine, Karras and Aila 2013, "Megakernels
+// Considered Harmful"): small programs and full subgroups, where one program of whole paths has neither.
 //
-//     items of work -> begin -> { cast -> scatter -> queue -> cast shadow rays } until none is left -> gather -> sums
+//     items of work -> begin -> { cast -> scatter -> queue -> cast shadow rays } until none is left -> gather
+//     -> sums
 #pragma once
 
 #include <algorithm>
@@ -62,7 +63,7 @@ class PathWaves {
     /// Paths that are traced at a time, at most.
     std::uint64_t mostPaths() const { return mostItems_ * shared::kItemPaths; }
     /// Rays that the traversal gave up since this was made.
-    Result<std::uint64_t> cappedRays();
+    Result<std::uint64_t> stepLimitRays();
     static std::uint64_t bytesFor(std::uint64_t paths);
 
   private:
@@ -86,7 +87,8 @@ class PathWaves {
         gpu::Buffer emitterRays;
         gpu::Buffer control;
     };
-    PathWaves(gpu::Device& device, const WaveOptions& options, Programs programs, Buffers buffers, std::size_t items);
+    PathWaves(gpu::Device& device, const WaveOptions& options, Programs programs, Buffers buffers,
+              std::size_t items);
     static Result<Programs> createPrograms(gpu::Device& device, const WaveOptions& options);
     static Result<Buffers> createBuffers(gpu::Device& device, std::uint64_t items);
 

@@ -36,7 +36,8 @@ std::vector<PlacedModel> placedModels(const LoadedScene& scene) {
 float finestVoxelMetres(const std::vector<PlacedModel>& models) {
     double finest = std::numeric_limits<double>::infinity();
     for (const PlacedModel& placed : models)
-        for (int axis = 0; axis < 3; ++axis) finest = std::min(finest, glm::length(glm::dvec3(placed.worldFromModel[axis])));
+        for (int axis = 0; axis < 3; ++axis)
+            finest = std::min(finest, glm::length(glm::dvec3(placed.worldFromModel[axis])));
     return std::isfinite(finest) ? static_cast<float>(finest) : 0.0f;
 }
 

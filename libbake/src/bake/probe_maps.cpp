@@ -14,9 +14,9 @@ std::vector<glm::vec3> storedLight(const TracedProbe& traced, const MapSettings&
     if (settings.filterVoxelMetres <= 0.0f) return traced.light;
     return filter::filterLight({.words = traced.words,
                                 .metres = traced.metres,
-                                .depthEdge = traced.edges.depth,
+                                .depthResolution = traced.resolution.depth,
                                 .light = traced.light,
-                                .lightEdge = traced.edges.light,
+                                .lightResolution = traced.resolution.light,
                                 .errors = traced.errors,
                                 .voxelMetres = settings.filterVoxelMetres},
                                {});
@@ -36,12 +36,14 @@ ProbeData makeMaps(const TracedProbe& traced, const MapSettings& settings) {
         for (const glm::vec3& light : storedLight(traced, settings)) data.light.push_back(packLight(light));
     }
     if (resolution.irradiance != 0)
-        data.irradiance = irradianceLayer({.edge = traced.edges.light, .texels = traced.leaving}, resolution.irradiance);
+        data.irradiance = irradianceLayer({.resolution = traced.resolution.light, .texels = traced.leaving},
+                                          resolution.irradiance);
     if (resolution.moments != 0) {
         std::vector<float> metres = traced.metres;
         for (float& distance : metres)
             if (distance < 0.0f) distance = std::numeric_limits<float>::infinity();
-        data.moments = momentsLayer({.edge = traced.edges.depth, .texels = metres}, settings.momentRange, resolution.moments);
+        data.moments = momentsLayer({.resolution = traced.resolution.depth, .texels = metres},
+                                    settings.momentRange, resolution.moments);
     }
     return data;
 }

@@ -23,7 +23,9 @@ class Search {
 
     double run(const OctreeModel& model) {
         for (const OctreeRegion& region : model.regions) {
-            if (region.tree.nodes.empty() || isFar(glm::dvec3(region.bounds.min), glm::dvec3(region.bounds.max))) continue;
+            if (region.tree.nodes.empty() ||
+                isFar(glm::dvec3(region.bounds.min), glm::dvec3(region.bounds.max)))
+                continue;
             node(region, 0, region.originVoxels, region.tree.depth - 1);
         }
         return best_;
@@ -44,7 +46,8 @@ class Search {
             const auto slot = static_cast<std::uint32_t>(std::countr_zero(rest));
             const bool leaf = (node::leafMask(d) >> slot & 1u) != 0;
             const std::uint32_t below = leaf ? 0 : child++;
-            const glm::ivec3 at = corner + (glm::ivec3(slot & 1u, slot >> 1 & 1u, slot >> 2) << static_cast<int>(level));
+            const glm::ivec3 at =
+                corner + (glm::ivec3(slot & 1u, slot >> 1 & 1u, slot >> 2) << static_cast<int>(level));
             const glm::dvec3 low(at);
             const glm::dvec3 high = low + std::ldexp(1.0, static_cast<int>(level));
             if (isFar(low, high)) continue;
@@ -75,7 +78,8 @@ bool isFree(const NearestSolid& nearest) {
 SolidQuery::SolidQuery(std::span<const PlacedModel> models) {
     for (const PlacedModel& placed : models) {
         const glm::dmat3 linear(placed.worldFromModel);
-        const double voxel = std::min({glm::length(linear[0]), glm::length(linear[1]), glm::length(linear[2])});
+        const double voxel =
+            std::min({glm::length(linear[0]), glm::length(linear[1]), glm::length(linear[2])});
         coarsestVoxel_ = std::max(coarsestVoxel_, voxel);
         solids_.push_back({&placed, 1.0 / frobenius(glm::dmat3(placed.modelFromWorld)), voxel});
     }
@@ -84,7 +88,8 @@ SolidQuery::SolidQuery(std::span<const PlacedModel> models) {
 NearestSolid SolidQuery::nearest(const glm::dvec3& point, double limitMetres) const {
     NearestSolid nearest{.metres = limitMetres, .voxelMetres = 0.0};
     for (const Solid& solid : solids_) {
-        const double found = Search(*solid.placed, solid.shortest, point, nearest.metres).run(*solid.placed->model);
+        const double found =
+            Search(*solid.placed, solid.shortest, point, nearest.metres).run(*solid.placed->model);
         if (found < nearest.metres) nearest = {.metres = found, .voxelMetres = solid.voxelMetres};
     }
     return nearest;
@@ -99,8 +104,10 @@ Placement placeProbe(const SolidQuery& solids, const ProbeGrid& grid, std::uint3
     if (!relocate) return best;
     double bestScore = -std::numeric_limits<double>::infinity();
     for (int i = 0; i < kLatticeEdge * kLatticeEdge * kLatticeEdge; ++i) {
-        const glm::dvec3 place(i % kLatticeEdge, i / kLatticeEdge % kLatticeEdge, i / kLatticeEdge / kLatticeEdge);
-        const glm::dvec3 offset = (place / (0.5 * (kLatticeEdge - 1)) - 1.0) * kReachSteps * glm::dvec3(grid.step);
+        const glm::dvec3 place(i % kLatticeEdge, i / kLatticeEdge % kLatticeEdge,
+                               i / kLatticeEdge / kLatticeEdge);
+        const glm::dvec3 offset =
+            (place / (0.5 * (kLatticeEdge - 1)) - 1.0) * kReachSteps * glm::dvec3(grid.step);
         if (glm::length(offset) == 0.0) continue;
         const glm::vec3 rounded(offset);
         const NearestSolid nearest = solids.nearest(glm::dvec3(grid.pointOf(probe) + rounded), limit);

@@ -18,26 +18,29 @@ constexpr std::uint64_t kMostSoftwareGroup = 4;
 /// Probes of a group bring this many waves of paths, so that what is done once a group does not count.
 constexpr std::uint64_t kWavesPerGroup = 4;
 
-std::uint64_t mapWords(const TracedEdges& edges) {
-    return 2ull * edges.depth * edges.depth + 7ull * edges.light * edges.light;
+std::uint64_t mapWords(const TracedResolution& resolution) {
+    return 2ull * resolution.depth * resolution.depth + 7ull * resolution.light * resolution.light;
 }
 
-std::uint64_t bytesPerProbe(const TracedEdges& edges) {
-    const std::uint64_t light = std::uint64_t{edges.light} * edges.light;
-    return std::uint64_t{edges.depth} * edges.depth * sizeof(shared::SeenTexel) + light * sizeof(glm::vec4) +
-           light / shared::kTileTexels * sizeof(shared::TileStatistics) + mapWords(edges) * sizeof(std::uint32_t);
+std::uint64_t bytesPerProbe(const TracedResolution& resolution) {
+    const std::uint64_t light = std::uint64_t{resolution.light} * resolution.light;
+    return std::uint64_t{resolution.depth} * resolution.depth * sizeof(shared::SeenTexel) +
+           light * sizeof(glm::vec4) + light / shared::kTileTexels * sizeof(shared::TileStatistics) +
+           mapWords(resolution) * sizeof(std::uint32_t);
 }
 
-/// Enough for full waves, in an eighth of the device's memory; few on a software device, so that a kill loses little.
-std::uint32_t groupFor(const gpu::DeviceInfo& device, const TracedEdges& edges, const BakeSettings& settings,
-                       std::uint64_t wavePaths) {
+/// Enough for full waves, in an eighth of the device's memory; few on a software device, so that a kill loses
+/// little.
+std::uint32_t groupFor(const gpu::DeviceInfo& device, const TracedResolution& resolution,
+                       const BakeSettings& settings, std::uint64_t wavePaths) {
     const bool software = device.kind == gpu::DeviceKind::Software;
-    const std::uint64_t paths = std::uint64_t{edges.light} * edges.light * settings.minSamples;
+    const std::uint64_t paths = std::uint64_t{resolution.light} * resolution.light * settings.minSamples;
     const std::uint64_t wanted = (software ? 1 : kWavesPerGroup) * wavePaths / paths;
-    const std::uint64_t memory = std::min(software ? std::uint64_t{256} << 20 : ~std::uint64_t{0}, device.localMemoryBytes / 8);
+    const std::uint64_t memory =
+        std::min(software ? std::uint64_t{256} << 20 : ~std::uint64_t{0}, device.localMemoryBytes / 8);
     // Indices of texels and of words of maps have 32 bits.
-    const std::uint64_t addressable = 0xffffffffull / mapWords(edges);
-    const std::uint64_t fitting = std::min(memory / bytesPerProbe(edges), addressable);
+    const std::uint64_t addressable = 0xffffffffull / mapWords(resolution);
+    const std::uint64_t fitting = std::min(memory / bytesPerProbe(resolution), addressable);
     return static_cast<std::uint32_t>(
         std::clamp<std::uint64_t>(std::min(wanted, fitting), 1, software ? kMostSoftwareGroup : kMostGroup));
 }
@@ -48,7 +51,8 @@ shared::BakeScene sceneRecord(const gpu::Scene& scene, const TracerInput& input,
             .emitters = emitters.addressWords(),
             .emitterCount = static_cast<std::uint32_t>(input.emitters.faces.size()),
             .emitterPower = input.emitters.power,
-            .maxBounces = std::min(settings.maxBounces.value_or(shared::kMaxPathBounces), shared::kMaxPathBounces),
+            .maxBounces =
+                std::min(settings.maxBounces.value_or(shared::kMaxPathBounces), shared::kMaxPathBounces),
             .sampling = static_cast<std::uint32_t>(settings.sampling),
             .sunDirection = glm::vec3(glm::normalize(input.sun.direction)),
             .seedLow = static_cast<std::uint32_t>(settings.seed),
@@ -68,7 +72,8 @@ WaveOptions waveOptions(const TracerInput& input, const BakeSettings& settings) 
             .hasSun = std::max({sun.x, sun.y, sun.z}) > 0.0,
             .hasEmitters = !input.emitters.faces.empty() && settings.sampling != LightSampling::Directions,
             .stratified = settings.stratified,
-            .maxBounces = std::min(settings.maxBounces.value_or(shared::kMaxPathBounces), shared::kMaxPathBounces),
+            .maxBounces =
+                std::min(settings.maxBounces.value_or(shared::kMaxPathBounces), shared::kMaxPathBounces),
             .submitSeconds = settings.dispatchSeconds};
 }
 
@@ -83,7 +88,7 @@ Result<void> fill(gpu::Device& device, const gpu::Buffer& source, std::uint64_t&
 
 }  // namespace
 
-TracedEdges tracedEdges(const ProbeResolution& resolution) {
+TracedResolution tracedResolution(const ProbeResolution& resolution) {
     const std::uint32_t depth = resolution.depth;
     const std::uint32_t light = resolution.light;
     if (depth != 0 && light != 0) return {depth, light};
@@ -108,10 +113,11 @@ Result<ProbeTracer::Programs> ProbeTracer::createPrograms(gpu::Device& device, b
 }
 
 Result<ProbeTracer::Buffers> ProbeTracer::createBuffers(gpu::Device& device, const EmitterList& emitters,
-                                                        const TracedEdges& edges, std::uint32_t probes) {
+                                                        const TracedResolution& resolution,
+                                                        std::uint32_t probes) {
     const std::uint64_t faces = std::max<std::uint64_t>(emitters.faces.size(), 1);
-    const std::uint64_t texels = std::uint64_t{probes} * edges.depth * edges.depth;
-    const std::uint64_t light = std::uint64_t{probes} * edges.light * edges.light;
+    const std::uint64_t texels = std::uint64_t{probes} * resolution.depth * resolution.depth;
+    const std::uint64_t light = std::uint64_t{probes} * resolution.light * resolution.light;
     const std::uint64_t tiles = light / shared::kTileTexels;
     PFVOX_TRY(gpu::Buffer, scene, device.createBuffer(sizeof(shared::BakeScene), "bake scene"));
     PFVOX_TRY(gpu::Buffer, faceList, device.createBuffer(faces * sizeof(shared::EmitterFace), "emitters"));
@@ -120,39 +126,43 @@ Result<ProbeTracer::Buffers> ProbeTracer::createBuffers(gpu::Device& device, con
     PFVOX_TRY(gpu::Buffer, seen, device.createBuffer(texels * sizeof(shared::SeenTexel), "seen texels"));
     PFVOX_TRY(gpu::Buffer, sums, device.createBuffer(light * sizeof(glm::vec4), "light sums"));
     PFVOX_TRY(gpu::Buffer, noise, device.createBuffer(tiles * sizeof(shared::TileStatistics), "tiles"));
-    PFVOX_TRY(gpu::Buffer, maps, device.createBuffer(probes * mapWords(edges) * sizeof(std::uint32_t), "maps"));
-    if (!emitters.faces.empty()) PFVOX_CHECK(device.upload(faceList, 0, std::as_bytes(std::span(emitters.faces))));
+    PFVOX_TRY(gpu::Buffer, maps,
+              device.createBuffer(probes * mapWords(resolution) * sizeof(std::uint32_t), "maps"));
+    if (!emitters.faces.empty())
+        PFVOX_CHECK(device.upload(faceList, 0, std::as_bytes(std::span(emitters.faces))));
     return Buffers{std::move(scene), std::move(faceList), std::move(wave),  std::move(places),
                    std::move(seen),  std::move(sums),     std::move(noise), std::move(maps)};
 }
 
-Result<ProbeTracer> ProbeTracer::create(gpu::Device& device, const gpu::Scene& scene, const TracerInput& input,
-                                        const BakeSettings& settings) {
+Result<ProbeTracer> ProbeTracer::create(gpu::Device& device, const gpu::Scene& scene,
+                                        const TracerInput& input, const BakeSettings& settings) {
     std::uint64_t items = PathWaves::itemsFor(device.info());
     for (;;) {
         auto tracer = createFor(device, scene, input, settings, items);
         if (tracer || tracer.error().code != ErrorCode::GpuOutOfMemory) return tracer;
-        if (items > PathWaves::kLeastItems) {  // others may have taken the memory: smaller pieces give the same light
+        if (items >
+            PathWaves::kLeastItems) {  // others may have taken the memory: smaller pieces give the same light
             items = std::max(items / 4, PathWaves::kLeastItems);
             continue;
         }
-        const std::uint64_t needed = bytesPerProbe(tracedEdges(settings.resolution)) +
+        const std::uint64_t needed = bytesPerProbe(tracedResolution(settings.resolution)) +
                                      PathWaves::bytesFor(items * shared::kItemPaths) +
                                      input.emitters.faces.size() * sizeof(shared::EmitterFace);
-        tracer.error().message += fmt::format(
-            "; the bake needs {} MiB of device memory beside {} MiB for the scene", (needed >> 20) + 1,
-            device.memory().currentBytes >> 20);
+        tracer.error().message +=
+            fmt::format("; the bake needs {} MiB of device memory beside {} MiB for the scene",
+                        (needed >> 20) + 1, device.memory().currentBytes >> 20);
         return tracer;
     }
 }
 
-Result<ProbeTracer> ProbeTracer::createFor(gpu::Device& device, const gpu::Scene& scene, const TracerInput& input,
-                                           const BakeSettings& settings, std::uint64_t items) {
-    const TracedEdges edges = tracedEdges(settings.resolution);
+Result<ProbeTracer> ProbeTracer::createFor(gpu::Device& device, const gpu::Scene& scene,
+                                           const TracerInput& input, const BakeSettings& settings,
+                                           std::uint64_t items) {
+    const TracedResolution resolution = tracedResolution(settings.resolution);
     PFVOX_TRY(Programs, programs, createPrograms(device, input.hasGlass));
     PFVOX_TRY(PathWaves, waves, PathWaves::create(device, waveOptions(input, settings), items));
-    const std::uint32_t group = groupFor(device.info(), edges, settings, waves.mostPaths());
-    PFVOX_TRY(Buffers, buffers, createBuffers(device, input.emitters, edges, group));
+    const std::uint32_t group = groupFor(device.info(), resolution, settings, waves.mostPaths());
+    PFVOX_TRY(Buffers, buffers, createBuffers(device, input.emitters, resolution, group));
     const glm::vec2 coding = DepthCoder(input.depth).scaleAndLogRange();
     shared::BakeWave wave{};
     wave.scene = buffers.scene.addressWords();
@@ -161,16 +171,16 @@ Result<ProbeTracer> ProbeTracer::createFor(gpu::Device& device, const gpu::Scene
     wave.sums = buffers.sums.addressWords();
     wave.tiles = buffers.tiles.addressWords();
     wave.maps = buffers.maps.addressWords();
-    wave.depthEdge = edges.depth;
-    wave.lightEdge = edges.light;
+    wave.depthResolution = resolution.depth;
+    wave.lightResolution = resolution.light;
     wave.depthScale = coding.x;
     wave.depthLogRange = coding.y;
     waves.describe(wave);
     PFVOX_CHECK(device.upload(buffers.wave, 0, gpu::bytesOf(wave)));
-    PFVOX_CHECK(device.upload(buffers.scene, 0,
-                              gpu::bytesOf(sceneRecord(scene, input, settings, buffers.emitters))));
+    PFVOX_CHECK(
+        device.upload(buffers.scene, 0, gpu::bytesOf(sceneRecord(scene, input, settings, buffers.emitters))));
     ProbeTracer tracer(device, std::move(waves), std::move(programs), std::move(buffers));
-    tracer.edges_ = edges;
+    tracer.resolution_ = resolution;
     tracer.groupSize_ = group;
     tracer.rules_ = {.minBatches = settings.minSamples / shared::kBatchSamples,
                      .maxBatches = settings.maxSamples / shared::kBatchSamples,
@@ -190,10 +200,11 @@ Result<double> ProbeTracer::run(const gpu::Program& program, std::uint32_t first
                                 .reserved1 = 0,
                                 .reserved2 = 0};
     const std::uint32_t groups = (count + perGroup - 1) / perGroup;
-    const gpu::Dispatch dispatch{.program = &program,
-                                 .pushConstants = gpu::bytesOf(push),
-                                 .groups = {std::min(groups, shared::kBakeRowGroups),
-                                            (groups + shared::kBakeRowGroups - 1) / shared::kBakeRowGroups, 1}};
+    const gpu::Dispatch dispatch{
+        .program = &program,
+        .pushConstants = gpu::bytesOf(push),
+        .groups = {std::min(groups, shared::kBakeRowGroups),
+                   (groups + shared::kBakeRowGroups - 1) / shared::kBakeRowGroups, 1}};
     return device_->run({&dispatch, 1});
 }
 
@@ -201,14 +212,15 @@ Result<void> ProbeTracer::see(std::span<const shared::BakeProbe> probes, const W
     probeCount_ = static_cast<std::uint32_t>(probes.size());
     finished_ = false;
     PFVOX_CHECK(device_->upload(buffers_.probes, 0, std::as_bytes(probes)));
-    const std::uint32_t texels = probeCount_ * edges_.depth * edges_.depth;
+    const std::uint32_t texels = probeCount_ * resolution_.depth * resolution_.depth;
     for (std::uint32_t first = 0; first < texels;) {
         const auto groups = static_cast<std::uint32_t>(geometryPace_.size());
         const std::uint32_t count = std::min(texels - first, groups * shared::kBakeGroupSize);
         const auto started = std::chrono::steady_clock::now();
         PFVOX_TRY(const double, gpuMs, run(programs_.geometry, first, count, shared::kBakeGroupSize));
         const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - started;
-        geometryPace_.took((count + shared::kBakeGroupSize - 1) / shared::kBakeGroupSize, seconds.count(), submitSeconds_);
+        geometryPace_.took((count + shared::kBakeGroupSize - 1) / shared::kBakeGroupSize, seconds.count(),
+                           submitSeconds_);
         PFVOX_CHECK(done({.rays = count, .gpuMs = gpuMs}));
         first += count;
     }
@@ -231,14 +243,15 @@ Result<void> ProbeTracer::light(const WorkDone& done) {
         std::vector<TileWork> work;
         for (std::uint32_t tile = 0; tile < judged_.size(); ++tile) {
             const std::uint32_t more = moreBatches(judged_[tile], rules_);
-            if (more != 0) work.push_back({.tile = tile, .firstBatch = judged_[tile].batches, .batches = more});
+            if (more != 0)
+                work.push_back({.tile = tile, .firstBatch = judged_[tile].batches, .batches = more});
         }
         if (work.empty()) break;
         PFVOX_CHECK(waves_.trace(work, buffers_.wave.addressWords(), done));
         PFVOX_TRY(std::vector<shared::TileStatistics>, judged, judgeTiles(programs_.tiles));
         judged_ = std::move(judged);
     }
-    const std::uint32_t texels = probeCount_ * edges_.light * edges_.light;
+    const std::uint32_t texels = probeCount_ * resolution_.light * resolution_.light;
     PFVOX_TRY(const double, gpuMs, run(programs_.finish, 0, texels, shared::kBakeGroupSize));
     static_cast<void>(gpuMs);
     finished_ = true;
@@ -248,31 +261,32 @@ Result<void> ProbeTracer::light(const WorkDone& done) {
 Result<TracedProbe> ProbeTracer::collect(std::uint32_t probe) {
     PFVOX_ASSERT(finished_ && probe < probeCount_);
     TracedProbe traced;
-    traced.edges = edges_;
-    const std::size_t depth = std::size_t{edges_.depth} * edges_.depth;
-    const std::size_t light = std::size_t{edges_.light} * edges_.light;
-    std::uint64_t at = probe * mapWords(edges_) * sizeof(std::uint32_t);
+    traced.resolution = resolution_;
+    const std::size_t depth = std::size_t{resolution_.depth} * resolution_.depth;
+    const std::size_t light = std::size_t{resolution_.light} * resolution_.light;
+    std::uint64_t at = probe * mapWords(resolution_) * sizeof(std::uint32_t);
     PFVOX_CHECK(fill(*device_, buffers_.maps, at, depth, traced.words));
     PFVOX_CHECK(fill(*device_, buffers_.maps, at, depth, traced.metres));
     PFVOX_CHECK(fill(*device_, buffers_.maps, at, light, traced.light));
     PFVOX_CHECK(fill(*device_, buffers_.maps, at, light, traced.errors));
     PFVOX_CHECK(fill(*device_, buffers_.maps, at, light, traced.leaving));
-    const auto tiles = std::span<const shared::TileStatistics>(judged_).subspan(probe * tilesPerProbe(), tilesPerProbe());
+    const auto tiles =
+        std::span<const shared::TileStatistics>(judged_).subspan(probe * tilesPerProbe(), tilesPerProbe());
     traced.tiles = summaryOf(tiles, rules_);
     return traced;
 }
 
 Result<std::vector<shared::SeenTexel>> ProbeTracer::seenTexels(std::uint32_t probe) {
     PFVOX_ASSERT(probe < probeCount_);
-    const std::size_t texels = std::size_t{edges_.depth} * edges_.depth;
+    const std::size_t texels = std::size_t{resolution_.depth} * resolution_.depth;
     std::vector<shared::SeenTexel> seen(texels);
     PFVOX_CHECK(device_->download(buffers_.texels, probe * texels * sizeof(shared::SeenTexel),
                                   std::as_writable_bytes(std::span(seen))));
     return seen;
 }
 
-Result<std::uint64_t> ProbeTracer::cappedRays() {
-    return waves_.cappedRays();
+Result<std::uint64_t> ProbeTracer::stepLimitRays() {
+    return waves_.stepLimitRays();
 }
 
 }  // namespace pfvox::bake

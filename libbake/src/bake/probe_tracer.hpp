@@ -11,11 +11,11 @@
 namespace pfvox::bake {
 
 /// Edges of the maps that are traced: those that are stored, or enough for the small layers where none are.
-struct TracedEdges {
+struct TracedResolution {
     std::uint32_t depth = 0;
     std::uint32_t light = 0;
 };
-TracedEdges tracedEdges(const ProbeResolution& resolution);
+TracedResolution tracedResolution(const ProbeResolution& resolution);
 
 struct TracerInput {
     const Sun& sun;
@@ -25,9 +25,9 @@ struct TracerInput {
     DepthEncoding depth;
 };
 
-/// What was traced for one probe: texels row by row, `edges.depth` and `edges.light` along a row.
+/// What was traced for one probe: texels row by row, `resolution.depth` and `resolution.light` along a row.
 struct TracedProbe {
-    TracedEdges edges;
+    TracedResolution resolution;
     std::vector<std::uint32_t> words;  ///< of ProbeLayer::DepthNormal
     std::vector<float> metres;         ///< along the texel's direction, < 0 = nothing
     std::vector<glm::vec3> light;      ///< I; 0 where no surface is seen
@@ -45,7 +45,8 @@ class ProbeTracer {
     /// Probes that fit into one group.
     std::uint32_t groupSize() const { return groupSize_; }
 
-    /// The group's maps: see(), then light(), then collect() for each of its probes. At most groupSize() probes.
+    /// The group's maps: see(), then light(), then collect() for each of its probes. At most groupSize()
+    /// probes.
     Result<void> see(std::span<const shared::BakeProbe> probes, const WorkDone& done);
     Result<void> light(const WorkDone& done);
     Result<TracedProbe> collect(std::uint32_t probe);
@@ -53,7 +54,7 @@ class ProbeTracer {
     Result<std::vector<shared::SeenTexel>> seenTexels(std::uint32_t probe);
 
     /// Rays of paths that the traversal gave up since the tracer was made.
-    Result<std::uint64_t> cappedRays();
+    Result<std::uint64_t> stepLimitRays();
 
   private:
     struct Programs {
@@ -63,24 +64,31 @@ class ProbeTracer {
         gpu::Program finish;
     };
     struct Buffers {
-        gpu::Buffer scene;     ///< shared::BakeScene
+        gpu::Buffer scene;  ///< shared::BakeScene
         gpu::Buffer emitters;
-        gpu::Buffer wave;      ///< shared::BakeWave
+        gpu::Buffer wave;  ///< shared::BakeWave
         gpu::Buffer probes;
-        gpu::Buffer texels;    ///< shared::SeenTexel
+        gpu::Buffer texels;  ///< shared::SeenTexel
         gpu::Buffer sums;
         gpu::Buffer tiles;
         gpu::Buffer maps;
     };
     ProbeTracer(gpu::Device& device, PathWaves waves, Programs programs, Buffers buffers)
-        : device_(&device), waves_(std::move(waves)), programs_(std::move(programs)), buffers_(std::move(buffers)) {}
-    static Result<ProbeTracer> createFor(gpu::Device& device, const gpu::Scene& scene, const TracerInput& input,
-                                         const BakeSettings& settings, std::uint64_t items);
+        : device_(&device),
+          waves_(std::move(waves)),
+          programs_(std::move(programs)),
+          buffers_(std::move(buffers)) {}
+    static Result<ProbeTracer> createFor(gpu::Device& device, const gpu::Scene& scene,
+                                         const TracerInput& input, const BakeSettings& settings,
+                                         std::uint64_t items);
     static Result<Programs> createPrograms(gpu::Device& device, bool hasGlass);
-    static Result<Buffers> createBuffers(gpu::Device& device, const EmitterList& emitters, const TracedEdges& edges,
-                                         std::uint32_t probes);
-    Result<double> run(const gpu::Program& program, std::uint32_t first, std::uint32_t count, std::uint32_t perGroup);
-    std::uint32_t tilesPerProbe() const { return edges_.light * edges_.light / shared::kTileTexels; }
+    static Result<Buffers> createBuffers(gpu::Device& device, const EmitterList& emitters,
+                                         const TracedResolution& resolution, std::uint32_t probes);
+    Result<double> run(const gpu::Program& program, std::uint32_t first, std::uint32_t count,
+                       std::uint32_t perGroup);
+    std::uint32_t tilesPerProbe() const {
+        return resolution_.light * resolution_.light / shared::kTileTexels;
+    }
     /// Noise of all tiles of the group, after `program` has judged them.
     Result<std::vector<shared::TileStatistics>> judgeTiles(const gpu::Program& program);
 
@@ -88,7 +96,7 @@ class ProbeTracer {
     PathWaves waves_;
     Programs programs_;
     Buffers buffers_;
-    TracedEdges edges_;
+    TracedResolution resolution_;
     TileRules rules_;
     double submitSeconds_ = 0.25;
     std::uint32_t groupSize_ = 1;

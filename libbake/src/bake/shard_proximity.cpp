@@ -33,7 +33,8 @@ Result<ProximityBuild> proximityOfShards(const LoadedScene& scene, std::span<con
     std::vector<ProbeRecord> records;
     for (const ProbeFileReader* shard : order) {
         if (shard->info().sceneHash != sceneContentHash(scene))
-            return fail(ErrorCode::BadStructure, "the shards were baked from another scene, or from this one before it changed");
+            return fail(ErrorCode::BadStructure,
+                        "the shards were baked from another scene, or from this one before it changed");
         for (std::uint32_t probe = shard->info().range.first; probe < shard->info().range.end; ++probe)
             records.push_back(shard->record(probe));
     }
@@ -44,8 +45,10 @@ Result<ProximityBuild> proximityOfShards(const LoadedScene& scene, std::span<con
         return std::move(data.depthNormal);
     };
     const ProbeFieldInfo& info = order.front()->info();
-    const ProximityGrid shape = bake::proximityShape(info.grid, scene.scene.probes.proximityCells, scene.bounds);
-    const CellSurfaces surfaces = sortIntoCells(bake::surfaceSamples(bake::placedModels(scene), shape), shape);
+    const ProximityGrid shape =
+        bake::proximityShape(info.grid, scene.scene.probes.proximityCells, scene.bounds);
+    const CellSurfaces surfaces =
+        sortIntoCells(bake::surfaceSamples(bake::placedModels(scene), shape), shape);
     return buildProximityGrid(
         {.info = info, .records = records, .depthNormal = depthNormal, .shape = shape, .surfaces = surfaces});
 }

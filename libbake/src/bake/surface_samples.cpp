@@ -23,10 +23,12 @@ bool meets(const PlacedModel& placed, const WorldBox& box) {
         if (region.bounds.empty()) continue;
         const glm::dvec3 middle = 0.5 * (glm::dvec3(region.bounds.min) + glm::dvec3(region.bounds.max));
         const glm::dvec3 half = glm::dvec3(region.bounds.max) - middle;
-        const glm::dvec3 centre = placed.worldFromModel * glm::dvec4(middle, 1.0);
+        const glm::dvec3 center = placed.worldFromModel * glm::dvec4(middle, 1.0);
         glm::dvec3 reach(0.0);
-        for (int axis = 0; axis < 3; ++axis) reach += half[axis] * glm::abs(glm::dvec3(placed.worldFromModel[axis]));
-        if (glm::all(glm::lessThanEqual(centre - reach, box.max)) && glm::all(glm::greaterThanEqual(centre + reach, box.min)))
+        for (int axis = 0; axis < 3; ++axis)
+            reach += half[axis] * glm::abs(glm::dvec3(placed.worldFromModel[axis]));
+        if (glm::all(glm::lessThanEqual(center - reach, box.max)) &&
+            glm::all(glm::greaterThanEqual(center + reach, box.min)))
             return true;
     }
     return false;
@@ -44,8 +46,9 @@ constexpr std::array<glm::dvec2, 9> kPlaces{{{0.0, 0.0},
                                              {0.0, 0.49}}};
 constexpr std::size_t kCorners = 4;
 
-/// Calls `visit` with the samples of a model that lie in the grid's box, always in the same order: the middle of each
-/// exposed face, and of the places around it those in cells of their own, or strips of faces would have no probes.
+/// Calls `visit` with the samples of a model that lie in the grid's box, always in the same order: the middle
+/// of each exposed face, and of the places around it those in cells of their own, or strips of faces would
+/// have no probes.
 template <class Visit>
 void forEachSample(const PlacedModel& placed, const ProximityGrid& shape, const Visit& visit) {
     const std::vector<bool> all(placed.asset->materials.size(), true);
@@ -61,7 +64,8 @@ void forEachSample(const PlacedModel& placed, const ProximityGrid& shape, const 
             glm::dvec3 point = middle;
             point[(face.axis() + 1) % 3] += kPlaces[i].x;
             point[(face.axis() + 2) % 3] += kPlaces[i].y;
-            const SurfaceSample sample{.position = glm::vec3(placed.worldFromModel * glm::dvec4(point, 1.0)), .normal = normal};
+            const SurfaceSample sample{.position = glm::vec3(placed.worldFromModel * glm::dvec4(point, 1.0)),
+                                       .normal = normal};
             cells[i] = cellOfSurface(shape, sample);
             const auto before = cells.begin() + static_cast<std::ptrdiff_t>(i);
             if (i != 0 && std::find(cells.begin(), before, cells[i]) != before) continue;
@@ -95,10 +99,12 @@ std::vector<SurfaceSample> surfaceSamples(std::span<const PlacedModel> models, c
     // Counted first: all samples at once may not fit into memory.
     std::vector<std::uint64_t> firstOfModel(models.size() + 1);
     tbb::parallel_for(std::size_t{0}, models.size(), [&](std::size_t i) {
-        if (meets(models[i], box)) forEachSample(models[i], shape, [&](const SurfaceSample&) { ++firstOfModel[i + 1]; });
+        if (meets(models[i], box))
+            forEachSample(models[i], shape, [&](const SurfaceSample&) { ++firstOfModel[i + 1]; });
     });
     std::partial_sum(firstOfModel.begin(), firstOfModel.end(), firstOfModel.begin());
-    const std::uint64_t stride = std::max<std::uint64_t>((firstOfModel.back() + most - 1) / std::max<std::uint64_t>(most, 1), 1);
+    const std::uint64_t stride =
+        std::max<std::uint64_t>((firstOfModel.back() + most - 1) / std::max<std::uint64_t>(most, 1), 1);
     std::vector<SurfaceSample> samples((firstOfModel.back() + stride - 1) / stride);
     tbb::parallel_for(std::size_t{0}, models.size(), [&](std::size_t i) {
         std::uint64_t index = firstOfModel[i];

@@ -33,13 +33,13 @@ TileSummary summaryOf(std::span<const shared::TileStatistics> tiles, const TileR
         summary.samples += std::uint64_t{tile.batches} * shared::kBatchSamples * tile.surfaceTexels;
         const double error = relativeError(tile, rules);
         const bool atEnd = tile.batches >= rules.maxBatches;
-        if (rules.noiseTarget > 0.0 && atEnd && error > rules.noiseTarget) summary.cappedTileShare += 1.0;
+        if (rules.noiseTarget > 0.0 && atEnd && error > rules.noiseTarget) summary.noisyTileFraction += 1.0;
         if (tile.batches < 2) continue;
         judged += 1.0;
         errors += error;
     }
     if (judged > 0.0) summary.meanError = errors / judged;
-    if (withSurface > 0.0) summary.cappedTileShare /= withSurface;
+    if (withSurface > 0.0) summary.noisyTileFraction /= withSurface;
     return summary;
 }
 

@@ -37,12 +37,12 @@ float brightness(const glm::vec3& c) {
 }
 
 /// The texel at any distance over the borders of the map: each of them is folded in its middle.
-glm::ivec2 wrapped(glm::ivec2 texel, int edge) {
-    if (texel.x < 0 || texel.x >= edge)
-        texel = {texel.x < 0 ? -1 - texel.x : 2 * edge - 1 - texel.x, edge - 1 - texel.y};
-    if (texel.y < 0 || texel.y >= edge)
-        texel = {edge - 1 - texel.x, texel.y < 0 ? -1 - texel.y : 2 * edge - 1 - texel.y};
-    return glm::clamp(texel, 0, edge - 1);
+glm::ivec2 wrapped(glm::ivec2 texel, int resolution) {
+    if (texel.x < 0 || texel.x >= resolution)
+        texel = {texel.x < 0 ? -1 - texel.x : 2 * resolution - 1 - texel.x, resolution - 1 - texel.y};
+    if (texel.y < 0 || texel.y >= resolution)
+        texel = {resolution - 1 - texel.x, texel.y < 0 ? -1 - texel.y : 2 * resolution - 1 - texel.y};
+    return glm::clamp(texel, 0, resolution - 1);
 }
 
 class Filter {
@@ -50,7 +50,7 @@ class Filter {
     Filter(const LightMap& map, const LightFilterSettings& settings)
         : map_(map),
           settings_(settings),
-          edge_(static_cast<int>(map.lightEdge)),
+          edge_(static_cast<int>(map.lightResolution)),
           light_(map.light.begin(), map.light.end()) {
         findPatches();
         setVariance();
@@ -69,11 +69,11 @@ class Filter {
     }
 
     void findPatches() {
-        const std::uint32_t block = map_.depthEdge / map_.lightEdge;
+        const std::uint32_t block = map_.depthResolution / map_.lightResolution;
         patches_.resize(light_.size());
-        for (std::uint32_t y = 0; y < map_.lightEdge; ++y)
-            for (std::uint32_t x = 0; x < map_.lightEdge; ++x)
-                patches_[x + std::size_t{map_.lightEdge} * y] = patchOf({x * block, y * block}, block);
+        for (std::uint32_t y = 0; y < map_.lightResolution; ++y)
+            for (std::uint32_t x = 0; x < map_.lightResolution; ++x)
+                patches_[x + std::size_t{map_.lightResolution} * y] = patchOf({x * block, y * block}, block);
     }
 
     Patch patchOf(glm::uvec2 first, std::uint32_t block) const {
@@ -82,9 +82,9 @@ class Filter {
         for (std::uint32_t i = 0; i < block * block; ++i) {
             const std::uint32_t x = first.x + i % block;
             const std::uint32_t y = first.y + i / block;
-            const std::size_t index = x + std::size_t{map_.depthEdge} * y;
+            const std::size_t index = x + std::size_t{map_.depthResolution} * y;
             if (map_.metres[index] < 0.0f) continue;  // paths start from the others only
-            const Plane seen{.position = map_.metres[index] * directionOfTexel(x, y, map_.depthEdge),
+            const Plane seen{.position = map_.metres[index] * directionOfTexel(x, y, map_.depthResolution),
                              .normal = normalOf(map_.words[index]),
                              .fraction = part};
             if (!addPlane(patch, seen)) return {};
@@ -98,7 +98,8 @@ class Filter {
         const Plane& largest = patch.planes[0];
         const float metres = glm::length(largest.position);
         const float cosine = std::max(std::abs(glm::dot(largest.position, largest.normal)) / metres, 0.05f);
-        patch.footprint = metres * std::sqrt(texelSolidAngle(texel.x, texel.y, map_.lightEdge) / cosine);
+        patch.footprint =
+            metres * std::sqrt(texelSolidAngle(texel.x, texel.y, map_.lightResolution) / cosine);
         return patch;
     }
 
@@ -262,8 +263,8 @@ class Filter {
 }  // namespace
 
 std::vector<glm::vec3> filterLight(const LightMap& map, const LightFilterSettings& settings) {
-    PFVOX_ASSERT(map.light.size() == std::size_t{map.lightEdge} * map.lightEdge);
-    PFVOX_ASSERT(map.lightEdge != 0 && map.depthEdge % map.lightEdge == 0);
+    PFVOX_ASSERT(map.light.size() == std::size_t{map.lightResolution} * map.lightResolution);
+    PFVOX_ASSERT(map.lightResolution != 0 && map.depthResolution % map.lightResolution == 0);
     return Filter(map, settings).run();
 }
 

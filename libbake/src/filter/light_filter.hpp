@@ -6,7 +6,7 @@
 // of a 5 x 5 kernel whose taps move apart from pass to pass (Dammertz et al. 2010, "Edge-Avoiding A-Trous
 // Wavelet Transform"), guided by the variance, which each pass carries on (Schied et al. 2017,
 // "Spatiotemporal Variance-Guided Filtering"). A difference counts by the noise of both texels, so that
-// neighbours take from a texel that is bright by chance; not all of it: a few percent of the light are lost
+// neighbors take from a texel that is bright by chance; not all of it: a few percent of the light are lost
 // where few paths carry most of it (docs/baking.md). Where the light is known well, nothing changes: the
 // error falls with the number of paths as before, from a lower start.
 #pragma once
@@ -19,13 +19,13 @@
 namespace pfvox::filter {
 
 struct LightMap {
-    std::span<const std::uint32_t> words;  ///< of ProbeLayer::DepthNormal, depthEdge squared
+    std::span<const std::uint32_t> words;  ///< of ProbeLayer::DepthNormal, depthResolution squared
     std::span<const float> metres;         ///< along the texel's direction, < 0 = nothing; as many
-    std::uint32_t depthEdge = 0;           ///< a multiple of lightEdge
-    std::span<const glm::vec3> light;      ///< I, lightEdge squared
-    std::uint32_t lightEdge = 0;
+    std::uint32_t depthResolution = 0;     ///< a multiple of lightResolution
+    std::span<const glm::vec3> light;      ///< I, lightResolution squared
+    std::uint32_t lightResolution = 0;
     /// Standard errors of the mean of the channels, one a texel of the light map; empty or 0: guessed from
-    /// how much the light of neighbours differs.
+    /// how much the light of neighbors differs.
     std::span<const float> errors;
     float voxelMetres = 0.1f;  ///< of the finest model
 };

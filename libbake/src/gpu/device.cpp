@@ -133,12 +133,11 @@ Result<Program> Device::createProgram(std::span<const std::uint32_t> spirv, std:
             vk::SpecializationInfo{}.setMapEntries(entries).setData<const std::uint32_t>(constants);
         state->pipeline = vk::raii::Pipeline(
             device, nullptr,
-            vk::ComputePipelineCreateInfo{
-                .stage = {.stage = vk::ShaderStageFlagBits::eCompute,
-                          .module = *module,
-                          .pName = "main",
-                          .pSpecializationInfo = &specialization},
-                .layout = *state->layout});
+            vk::ComputePipelineCreateInfo{.stage = {.stage = vk::ShaderStageFlagBits::eCompute,
+                                                    .module = *module,
+                                                    .pName = "main",
+                                                    .pSpecializationInfo = &specialization},
+                                          .layout = *state->layout});
         const auto handle = reinterpret_cast<std::uint64_t>(static_cast<VkPipeline>(*state->pipeline));
         context_->nameObject(vk::ObjectType::ePipeline, handle, label);
         return Program(std::move(state));
@@ -147,7 +146,8 @@ Result<Program> Device::createProgram(std::span<const std::uint32_t> spirv, std:
 
 namespace {
 
-void record(const vk::raii::CommandBuffer& commands, const detail::ProgramState& program, const Dispatch& dispatch) {
+void record(const vk::raii::CommandBuffer& commands, const detail::ProgramState& program,
+            const Dispatch& dispatch) {
     PFVOX_ASSERT(dispatch.pushConstants.size() == program.pushConstantBytes);
     commands.bindPipeline(vk::PipelineBindPoint::eCompute, *program.pipeline);
     commands.pushConstants<std::byte>(
@@ -166,7 +166,8 @@ void record(const vk::raii::CommandBuffer& commands, const detail::ProgramState&
                          vk::AccessFlagBits::eIndirectCommandRead | vk::AccessFlagBits::eTransferRead |
                          vk::AccessFlagBits::eTransferWrite};
     commands.pipelineBarrier(vk::PipelineStageFlagBits::eComputeShader,
-                             vk::PipelineStageFlagBits::eComputeShader | vk::PipelineStageFlagBits::eDrawIndirect |
+                             vk::PipelineStageFlagBits::eComputeShader |
+                                 vk::PipelineStageFlagBits::eDrawIndirect |
                                  vk::PipelineStageFlagBits::eTransfer,
                              {}, written, nullptr, nullptr);
 }
@@ -185,7 +186,8 @@ Result<std::vector<double>> Device::runTimed(std::span<const Dispatch> dispatche
     return guarded("run", [&] {
         return context_->submitTimed(static_cast<std::uint32_t>(dispatches.size()),
                                      [&](const vk::raii::CommandBuffer& commands, std::uint32_t piece) {
-                                         record(commands, *dispatches[piece].program->state_, dispatches[piece]);
+                                         record(commands, *dispatches[piece].program->state_,
+                                                dispatches[piece]);
                                      });
     });
 }

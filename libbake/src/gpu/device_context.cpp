@@ -68,7 +68,7 @@ DeviceContext::DeviceContext(Instance instance, FoundDevice found, const DeviceO
 
 DeviceContext::~DeviceContext() {
     try {
-        wait(submissions_);  // copies may be under way
+        wait(submissions_);       // copies may be under way
     } catch (const vk::Error&) {  // of a lost device: nothing is
     }
 }
@@ -178,8 +178,7 @@ std::uint64_t DeviceContext::submitCommands(const vk::raii::CommandBuffer& comma
 
 void DeviceContext::wait(std::uint64_t submission) const {
     if (submission == 0) return;
-    const vk::SemaphoreWaitInfo wait{
-        .semaphoreCount = 1, .pSemaphores = &*timeline_, .pValues = &submission};
+    const vk::SemaphoreWaitInfo wait{.semaphoreCount = 1, .pSemaphores = &*timeline_, .pValues = &submission};
     if (device_.waitSemaphores(wait, kMaxU64) != vk::Result::eSuccess) {
         throw vk::DeviceLostError("waiting for the device");
     }
@@ -236,7 +235,8 @@ std::vector<double> DeviceContext::submitTimed(
     }
     submit([&](const vk::raii::CommandBuffer& commands) {
         const auto stamp = [&](std::uint32_t query) {
-            if (timed) commands.writeTimestamp(vk::PipelineStageFlagBits::eBottomOfPipe, *pieceStamps_, query);
+            if (timed)
+                commands.writeTimestamp(vk::PipelineStageFlagBits::eBottomOfPipe, *pieceStamps_, query);
         };
         if (timed) commands.resetQueryPool(*pieceStamps_, 0, pieces + 1);
         stamp(0);
@@ -251,7 +251,8 @@ std::vector<double> DeviceContext::submitTimed(
     const auto [result, ticks] = pieceStamps_.getResults<std::uint64_t>(
         0, pieces + 1, bytes, sizeof(std::uint64_t), vk::QueryResultFlagBits::e64);
     if (result != vk::Result::eSuccess) return times;
-    for (std::uint32_t piece = 0; piece < pieces; ++piece) times[piece] = msBetween(ticks[piece], ticks[piece + 1]);
+    for (std::uint32_t piece = 0; piece < pieces; ++piece)
+        times[piece] = msBetween(ticks[piece], ticks[piece + 1]);
     return times;
 }
 

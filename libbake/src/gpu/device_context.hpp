@@ -57,9 +57,11 @@ class DeviceContext {
     void nameObject(vk::ObjectType type, std::uint64_t handle, const std::string& name) const;
     /// Records commands, submits them and waits. Returns the milliseconds between the first and the last.
     double submit(const std::function<void(const vk::raii::CommandBuffer&)>& record);
-    /// Calls `record` for each piece. Returns the milliseconds of each; zeros where the queue has no time stamps.
-    std::vector<double> submitTimed(std::uint32_t pieces,
-                                    const std::function<void(const vk::raii::CommandBuffer&, std::uint32_t)>& record);
+    /// Calls `record` for each piece. Returns the milliseconds of each; zeros where the queue has no time
+    /// stamps.
+    std::vector<double> submitTimed(
+        std::uint32_t pieces,
+        const std::function<void(const vk::raii::CommandBuffer&, std::uint32_t)>& record);
 
     std::span<std::byte> stage(vk::Buffer target, std::uint64_t offsetBytes, std::uint64_t sizeBytes) {
         return staging_.stage(target, offsetBytes, sizeBytes);

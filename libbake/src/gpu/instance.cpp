@@ -233,7 +233,8 @@ Result<Instance> createInstance(const DeviceOptions& options) {
             made.instance = vk::raii::Instance(made.context, info);
         } catch (const vk::IncompatibleDriverError&) {
             throw std::runtime_error(
-                "no Vulkan driver is installed; llvmpipe runs on every processor (Debian: mesa-vulkan-drivers)");
+                "no Vulkan driver is installed; llvmpipe runs on every processor (Debian: "
+                "mesa-vulkan-drivers)");
         }
         if (validation) made.messenger = vk::raii::DebugUtilsMessengerEXT(made.instance, messenger);
         return made;
@@ -244,9 +245,8 @@ Result<std::vector<FoundDevice>> findDevices(const Instance& instance, const Dev
     return guarded("cannot list Vulkan devices", [&] {
         std::vector<FoundDevice> devices;
         for (vk::raii::PhysicalDevice& physical : vk::raii::PhysicalDevices(instance.instance)) {
-            devices.push_back(
-                describeDevice(std::move(physical), static_cast<std::uint32_t>(devices.size()),
-                               *instance.instance, options));
+            devices.push_back(describeDevice(std::move(physical), static_cast<std::uint32_t>(devices.size()),
+                                             *instance.instance, options));
         }
         return devices;
     });

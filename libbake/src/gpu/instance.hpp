@@ -28,7 +28,8 @@ struct Instance {
     vk::raii::DebugUtilsMessengerEXT messenger{nullptr};
 };
 
-/// Errors: GpuUnavailable, also when validation is asked for and its layer is not installed, or an extension is missing.
+/// Errors: GpuUnavailable, also when validation is asked for and its layer is not installed, or an extension
+/// is missing.
 Result<Instance> createInstance(const DeviceOptions& options);
 
 struct FoundDevice {

@@ -8,7 +8,8 @@ namespace {
 constexpr std::uint64_t kSegmentBytes = 16u << 20;
 }
 
-std::span<std::byte> StagingRing::stage(vk::Buffer target, std::uint64_t offsetBytes, std::uint64_t sizeBytes) {
+std::span<std::byte> StagingRing::stage(vk::Buffer target, std::uint64_t offsetBytes,
+                                        std::uint64_t sizeBytes) {
     ensureRoom(sizeBytes);
     Segment& segment = segments_[current_];
     const std::uint64_t at = segment.usedBytes;
@@ -31,7 +32,8 @@ void StagingRing::ensureRoom(std::uint64_t sizeBytes) {
 }
 
 void StagingRing::record(const Segment& segment, const vk::raii::CommandBuffer& commands) {
-    for (const Copy& copy : segment.copies) commands.copyBuffer(*segment.memory.buffer, copy.target, copy.region);
+    for (const Copy& copy : segment.copies)
+        commands.copyBuffer(*segment.memory.buffer, copy.target, copy.region);
 }
 
 void StagingRing::startCopying() {

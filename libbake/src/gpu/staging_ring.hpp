@@ -1,4 +1,5 @@
-// Memory that the CPU writes and the device copies from, in segments: while the device copies one, the CPU fills the next.
+// Memory that the CPU writes and the device copies from, in segments: while the device copies one, the CPU
+// fills the next.
 #pragma once
 
 #include <array>
@@ -24,12 +25,13 @@ class StagingRing {
     };
     explicit StagingRing(Services services) : services_(std::move(services)) {}
 
-    /// Room whose content goes to `target` with the next recordCopies() or earlier. Valid until the next call.
+    /// Room whose content goes to `target` with the next recordCopies() or earlier. Valid until the next
+    /// call.
     std::span<std::byte> stage(vk::Buffer target, std::uint64_t offsetBytes, std::uint64_t sizeBytes);
 
     bool hasPendingCopies() const { return !segments_[current_].copies.empty(); }
-    /// Puts the copies that have not been submitted into these commands, and goes on with the next segment once
-    /// `submission` is known.
+    /// Puts the copies that have not been submitted into these commands, and goes on with the next segment
+    /// once `submission` is known.
     void recordCopies(const vk::raii::CommandBuffer& commands);
     void submitted(std::uint64_t submission);
     /// Forgets copies to a buffer that goes away, and waits for those under way.

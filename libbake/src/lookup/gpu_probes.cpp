@@ -16,10 +16,12 @@ namespace {
 
 constexpr std::uint64_t kAlignment = 16;
 constexpr std::uint64_t kBlockBytes = 256u << 20;
-constexpr std::array kLayers{ProbeLayer::DepthNormal, ProbeLayer::Light, ProbeLayer::MinDepth, ProbeLayer::Irradiance,
-                             ProbeLayer::Moments};
+constexpr std::array kLayers{ProbeLayer::DepthNormal, ProbeLayer::Light, ProbeLayer::MinDepth,
+                             ProbeLayer::Irradiance, ProbeLayer::Moments};
 
-std::uint64_t aligned(std::uint64_t bytes) { return (bytes + kAlignment - 1) / kAlignment * kAlignment; }
+std::uint64_t aligned(std::uint64_t bytes) {
+    return (bytes + kAlignment - 1) / kAlignment * kAlignment;
+}
 
 bool wanted(ProbeLayer layer, const GpuProbeSettings& settings) {
     return !settings.compactOnly || layer == ProbeLayer::Irradiance || layer == ProbeLayer::Moments;
@@ -35,7 +37,8 @@ std::uint64_t mapBytesPerProbe(const ProbeFileReader& reader, const GpuProbeSett
 
 std::uint32_t activeCount(const ProbeFileReader& reader) {
     std::uint32_t count = 0;
-    for (std::uint32_t i = 0; i < reader.info().grid.probeCount(); ++i) count += reader.record(i).isActive() ? 1u : 0u;
+    for (std::uint32_t i = 0; i < reader.info().grid.probeCount(); ++i)
+        count += reader.record(i).isActive() ? 1u : 0u;
     return count;
 }
 
@@ -55,8 +58,8 @@ glm::uvec2& addressIn(shared::ProbeEntry& entry, ProbeLayer layer) {
     return entry.moments;
 }
 
-/// For every probe the nearest active one, found by spreading from the active ones over the grid: exact enough for a
-/// value that is read only where there is nothing better, and linear in the number of probes.
+/// For every probe the nearest active one, found by spreading from the active ones over the grid: exact
+/// enough for a value that is read only where there is nothing better, and linear in the number of probes.
 void setNearestActive(const ProbeGrid& grid, std::vector<shared::ProbeEntry>& entries) {
     std::vector<std::uint32_t> front;
     for (std::uint32_t i = 0; i < entries.size(); ++i) {
@@ -68,12 +71,12 @@ void setNearestActive(const ProbeGrid& grid, std::vector<shared::ProbeEntry>& en
         for (const std::uint32_t from : front) {
             const glm::ivec3 at{grid.placeOf(from)};
             for (int side = 0; side < 6; ++side) {
-                glm::ivec3 neighbour = at;
-                neighbour[side / 2] += side % 2 == 0 ? -1 : 1;
-                if (glm::any(glm::lessThan(neighbour, glm::ivec3{0})) ||
-                    glm::any(glm::greaterThanEqual(neighbour, glm::ivec3{grid.counts})))
+                glm::ivec3 neighbor = at;
+                neighbor[side / 2] += side % 2 == 0 ? -1 : 1;
+                if (glm::any(glm::lessThan(neighbor, glm::ivec3{0})) ||
+                    glm::any(glm::greaterThanEqual(neighbor, glm::ivec3{grid.counts})))
                     continue;
-                const std::uint32_t index = grid.indexOf(glm::uvec3{neighbour});
+                const std::uint32_t index = grid.indexOf(glm::uvec3{neighbor});
                 if (entries[index].nearestActive != shared::kNoProbeIndex) continue;
                 entries[index].nearestActive = entries[from].nearestActive;
                 next.push_back(index);
@@ -89,7 +92,8 @@ class MapArena {
     MapArena(Device& device, std::uint64_t bytesPerProbe, std::uint32_t probes) : device_(device) {
         const std::uint64_t room = std::max(std::min(device.maxBufferBytes(), kBlockBytes), bytesPerProbe);
         const std::uint64_t perBlock = bytesPerProbe == 0 ? 0 : room / bytesPerProbe;
-        blockBytes_ = std::max<std::uint64_t>(std::min<std::uint64_t>(perBlock, probes) * bytesPerProbe, kAlignment);
+        blockBytes_ =
+            std::max<std::uint64_t>(std::min<std::uint64_t>(perBlock, probes) * bytesPerProbe, kAlignment);
         bytesPerProbe_ = bytesPerProbe;
     }
 
@@ -128,14 +132,15 @@ shared::ProbeFieldRecord recordOf(const ProbeFileReader& reader, const GpuProbeS
     record.start = info.grid.start;
     record.step = info.grid.step;
     record.counts = glm::ivec3{info.grid.counts};
-    record.depthEdge = settings.compactOnly ? 0 : resolution.depth;
-    record.lightEdge = settings.compactOnly ? 0 : resolution.light;
-    record.irradianceEdge = resolution.irradiance;
-    record.momentsEdge = resolution.moments;
+    record.depthResolution = settings.compactOnly ? 0 : resolution.depth;
+    record.lightResolution = settings.compactOnly ? 0 : resolution.light;
+    record.irradianceResolution = resolution.irradiance;
+    record.momentsResolution = resolution.moments;
     record.momentRange = info.grid.momentRange();
     record.voxelMetres = settings.voxelMetres;
     record.farMetres = info.depth.farMetres;
-    record.depthScaleAndLogRange = {info.depth.scale, std::log(info.depth.scale * info.depth.farMetres + 1.0f)};
+    record.depthScaleAndLogRange = {info.depth.scale,
+                                    std::log(info.depth.scale * info.depth.farMetres + 1.0f)};
     if (const auto& proximity = reader.proximity(); proximity && !settings.compactOnly) {
         record.cellStart = proximity->start;
         record.cellStep = proximity->step;
@@ -165,30 +170,35 @@ Result<std::vector<shared::ProbeEntry>> uploadMaps(MapArena& arena, const ProbeF
 
 Error withNeed(Error error, std::uint64_t neededBytes) {
     if (error.code != ErrorCode::GpuOutOfMemory) return error;
-    error.message += fmt::format("; the probe field needs {:.1f} MiB of device memory: bake with a smaller profile",
-                                 static_cast<double>(neededBytes) / (1 << 20));
+    error.message +=
+        fmt::format("; the probe field needs {:.1f} MiB of device memory: bake with a smaller profile",
+                    static_cast<double>(neededBytes) / (1 << 20));
     return error;
 }
 
 }  // namespace
 
 std::uint64_t GpuProbes::bytesOf(const ProbeFileReader& reader, const GpuProbeSettings& settings) {
-    std::uint64_t bytes = sizeof(shared::ProbeFieldRecord) + reader.info().grid.probeCount() * sizeof(shared::ProbeEntry);
+    std::uint64_t bytes =
+        sizeof(shared::ProbeFieldRecord) + reader.info().grid.probeCount() * sizeof(shared::ProbeEntry);
     bytes += activeCount(reader) * mapBytesPerProbe(reader, settings);
     if (reader.proximity()) bytes += reader.proximity()->probes.size() * sizeof(std::uint32_t);
     return bytes;
 }
 
-Result<GpuProbes> GpuProbes::upload(Device& device, const ProbeFileReader& reader, const GpuProbeSettings& settings) {
+Result<GpuProbes> GpuProbes::upload(Device& device, const ProbeFileReader& reader,
+                                    const GpuProbeSettings& settings) {
     if (!reader.info().isWhole())
-        return fail(ErrorCode::BadStructure, "the file is a shard of its grid: join all shards with `probe-bake merge`");
+        return fail(ErrorCode::BadStructure,
+                    "the file is a shard of its grid: join all shards with `probe-bake merge`");
     const std::uint32_t active = activeCount(reader);
     const auto uploadAll = [&]() -> Result<GpuProbes> {
         MapArena arena(device, mapBytesPerProbe(reader, settings), active);
         PFVOX_TRY(const std::vector<shared::ProbeEntry>, entries, uploadMaps(arena, reader, settings));
         shared::ProbeFieldRecord record = recordOf(reader, settings);
         const std::span<const std::uint32_t> cells =
-            record.cellCounts.x != 0 ? std::span<const std::uint32_t>(reader.proximity()->probes) : std::span<const std::uint32_t>();
+            record.cellCounts.x != 0 ? std::span<const std::uint32_t>(reader.proximity()->probes)
+                                     : std::span<const std::uint32_t>();
 
         const std::uint64_t entriesAt = sizeof record;
         const std::uint64_t cellsAt = entriesAt + entries.size() * sizeof(shared::ProbeEntry);

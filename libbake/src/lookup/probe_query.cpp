@@ -56,8 +56,9 @@ std::string_view toString(ProbeTier tier) {
 }
 
 Result<ProbeQuery> ProbeQuery::create(Device& device) {
-    PFVOX_TRY(Program, program,
-              device.createProgram(shaders::kProbeQuery, sizeof(shared::ProbeQueryParameters), "probe query"));
+    PFVOX_TRY(
+        Program, program,
+        device.createProgram(shaders::kProbeQuery, sizeof(shared::ProbeQueryParameters), "probe query"));
     return ProbeQuery(std::move(program));
 }
 
@@ -65,7 +66,8 @@ Result<std::vector<ProbeLookup>> ProbeQuery::lookUp(Device& device, const GpuPro
                                                     std::span<const ProbePoint> points) const {
     std::vector<shared::ProbeQueryRecord> queries(points.size());
     std::ranges::transform(points, queries.begin(), [](const ProbePoint& point) {
-        return shared::ProbeQueryRecord{.position = point.position, .tMax = 0, .direction = point.normal, .reserved0 = 0};
+        return shared::ProbeQueryRecord{
+            .position = point.position, .tMax = 0, .direction = point.normal, .reserved0 = 0};
     });
     PFVOX_TRY(const std::vector<shared::ProbeAnswerRecord>, answers,
               runQueries(device, program_, probes, queries, shared::kQueryLookup));
@@ -79,7 +81,8 @@ Result<std::vector<ProbeLookup>> ProbeQuery::lookUp(Device& device, const GpuPro
 }
 
 Result<std::vector<FieldTrace>> ProbeQuery::trace(Device& device, const GpuProbes& probes,
-                                                  std::span<const FieldRay> rays, FieldTracing tracing) const {
+                                                  std::span<const FieldRay> rays,
+                                                  FieldTracing tracing) const {
     std::vector<shared::ProbeQueryRecord> queries(rays.size());
     std::ranges::transform(rays, queries.begin(), [](const FieldRay& ray) {
         return shared::ProbeQueryRecord{
@@ -97,7 +100,7 @@ Result<std::vector<FieldTrace>> ProbeQuery::trace(Device& device, const GpuProbe
                           .lowSteps = answer.lowSteps,
                           .highSteps = answer.highSteps,
                           .probesAsked = answer.probesAndCaps & 0xffffu,
-                          .capped = answer.probesAndCaps >> 16};
+                          .stepLimitReached = answer.probesAndCaps >> 16};
     });
     return results;
 }

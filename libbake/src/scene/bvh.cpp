@@ -49,23 +49,23 @@ class Builder {
   private:
     void buildNode(std::size_t index, Range range, std::uint32_t depth) {
         Box box;
-        Box centres;
+        Box centers;
         for (std::uint32_t i = range.begin; i < range.end; ++i) {
             box.include(boxes_[bvh_.order[i]]);
-            centres.include(boxes_[bvh_.order[i]].centre());
+            centers.include(boxes_[bvh_.order[i]].center());
         }
         bvh_.nodes[index] = {
             .boxMin = box.min, .first = range.begin, .boxMax = box.max, .count = range.size()};
         if (range.size() == 1) return;
 
-        const Split split = bestSplit(range, centres);
+        const Split split = bestSplit(range, centers);
         const float splitCost = 1.0f + kInstanceCost * split.cost / std::max(box.halfArea(), 1e-30f);
         const float leafCost = kInstanceCost * static_cast<float>(range.size());
         if (range.size() <= kMaxLeafBoxes && !(splitCost < leafCost)) return;
 
         const bool useSah = depth < kSahDepth && splitCost < std::numeric_limits<float>::infinity();
         const std::uint32_t middle =
-            useSah ? partitionAt(range, centres, split) : partitionHalf(range, centres);
+            useSah ? partitionAt(range, centers, split) : partitionHalf(range, centers);
         const std::size_t left = bvh_.nodes.size();
         bvh_.nodes.resize(left + 2);
         bvh_.nodes[index].first = static_cast<std::uint32_t>(left);
@@ -74,21 +74,21 @@ class Builder {
         buildNode(left + 1, {middle, range.end}, depth + 1);
     }
 
-    static std::size_t binOf(const Box& box, const Box& centres, int axis) {
-        const float extent = centres.max[axis] - centres.min[axis];
-        const float place = (box.centre()[axis] - centres.min[axis]) / extent;
+    static std::size_t binOf(const Box& box, const Box& centers, int axis) {
+        const float extent = centers.max[axis] - centers.min[axis];
+        const float place = (box.center()[axis] - centers.min[axis]) / extent;
         return std::min(static_cast<std::size_t>(std::max(place, 0.0f) * static_cast<float>(kBins)),
                         kBins - 1);
     }
 
-    /// Cost: sum over both sides of half area x boxes. Infinite when all centres coincide.
-    Split bestSplit(Range range, const Box& centres) const {
+    /// Cost: sum over both sides of half area x boxes. Infinite when all centers coincide.
+    Split bestSplit(Range range, const Box& centers) const {
         Split best;
         for (int axis = 0; axis < 3; ++axis) {
-            if (!(centres.max[axis] > centres.min[axis])) continue;
+            if (!(centers.max[axis] > centers.min[axis])) continue;
             std::array<Bin, kBins> bins;
             for (std::uint32_t i = range.begin; i < range.end; ++i) {
-                Bin& bin = bins[binOf(boxes_[bvh_.order[i]], centres, axis)];
+                Bin& bin = bins[binOf(boxes_[bvh_.order[i]], centers, axis)];
                 bin.box.include(boxes_[bvh_.order[i]]);
                 ++bin.count;
             }
@@ -117,22 +117,22 @@ class Builder {
         }
     }
 
-    std::uint32_t partitionAt(Range range, const Box& centres, const Split& split) {
+    std::uint32_t partitionAt(Range range, const Box& centers, const Split& split) {
         const auto begin = bvh_.order.begin();
         const auto middle = std::partition(begin + range.begin, begin + range.end, [&](std::uint32_t box) {
-            return binOf(boxes_[box], centres, split.axis) < split.bin;
+            return binOf(boxes_[box], centers, split.axis) < split.bin;
         });
         return static_cast<std::uint32_t>(middle - begin);
     }
 
-    std::uint32_t partitionHalf(Range range, const Box& centres) {
-        const glm::vec3 extent = centres.max - centres.min;
+    std::uint32_t partitionHalf(Range range, const Box& centers) {
+        const glm::vec3 extent = centers.max - centers.min;
         const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
         const std::uint32_t middle = range.begin + range.size() / 2;
         const auto begin = bvh_.order.begin();
         std::nth_element(begin + range.begin, begin + middle, begin + range.end,
                          [&](std::uint32_t a, std::uint32_t b) {
-                             return boxes_[a].centre()[axis] < boxes_[b].centre()[axis];
+                             return boxes_[a].center()[axis] < boxes_[b].center()[axis];
                          });
         return middle;
     }

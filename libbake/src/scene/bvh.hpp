@@ -29,11 +29,11 @@ struct Box {
         const glm::vec3 e = glm::max(max - min, glm::vec3(0.0f));
         return e.x * e.y + e.y * e.z + e.z * e.x;
     }
-    glm::vec3 centre() const { return 0.5f * (min + max); }
+    glm::vec3 center() const { return 0.5f * (min + max); }
 };
 
 struct Bvh {
-    std::vector<shared::BvhNode> nodes;  ///< node 0 is the root; the two children of a node are neighbours
+    std::vector<shared::BvhNode> nodes;  ///< node 0 is the root; the two children of a node are neighbors
     std::vector<std::uint32_t> order;    ///< leaves refer to ranges of this permutation of the boxes
 };
 

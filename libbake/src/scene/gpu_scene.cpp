@@ -70,7 +70,8 @@ std::uint64_t paddedBytes(const std::vector<T>& items) {
 /// As shaders/material.glsl says.
 bool letsThrough(const shared::MaterialRecord& material) {
     const auto type = static_cast<MaterialType>(material.type);
-    const bool glass = type == MaterialType::Glass || type == MaterialType::Media || type == MaterialType::Blend;
+    const bool glass =
+        type == MaterialType::Glass || type == MaterialType::Media || type == MaterialType::Blend;
     return glass && material.transparency > 0.0f && material.emissionStrength == 0.0f;
 }
 bool mirrors(const shared::MaterialRecord& material) {
@@ -158,20 +159,22 @@ class Scene::ModelPlacer {
 
     Result<void> upload(const UsedModel& used, const WideModel& model) {
         PFVOX_TRY(const shared::ModelRecord, record, uploadModel(device_, used, model, arena_));
-        fresh_[model.index] = std::make_shared<PlacedModel>(PlacedModel{.used = used,
-                                                                        .record = record,
-                                                                        .nodeBytes = model.tree.nodeBytes(),
-                                                                        .lodBytes = model.tree.lodBytes(),
-                                                                        .valueBytes = model.tree.valueBytes(),
-                                                                        .paletteBytes = model.tree.paletteBytes(),
-                                                                        .block = nullptr});
+        fresh_[model.index] =
+            std::make_shared<PlacedModel>(PlacedModel{.used = used,
+                                                      .record = record,
+                                                      .nodeBytes = model.tree.nodeBytes(),
+                                                      .lodBytes = model.tree.lodBytes(),
+                                                      .valueBytes = model.tree.valueBytes(),
+                                                      .paletteBytes = model.tree.paletteBytes(),
+                                                      .block = nullptr});
         return {};
     }
 
     /// Each buffer lives as long as one of its models does.
     void share(const std::vector<WideModel>& fresh) {
         std::vector<std::shared_ptr<const Buffer>> blocks;
-        for (Buffer& buffer : arena_.takeBuffers()) blocks.push_back(std::make_shared<const Buffer>(std::move(buffer)));
+        for (Buffer& buffer : arena_.takeBuffers())
+            blocks.push_back(std::make_shared<const Buffer>(std::move(buffer)));
         for (const WideModel& model : fresh) {
             fresh_[model.index]->block = blocks[model.place.buffer];
             placed_[model.index] = fresh_[model.index];

@@ -22,7 +22,7 @@ GpuHit hitOf(const shared::HitRecord& record) {
             .material = record.material,
             .face = static_cast<std::uint8_t>(record.face),
             .steps = record.steps,
-            .capped = record.capped != 0,
+            .stepLimitReached = record.stepLimitReached != 0,
             .lodColor = record.lodColor,
             .cellLog2 = record.cellLog2};
 }

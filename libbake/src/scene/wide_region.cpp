@@ -187,7 +187,7 @@ class RegionWidener {
         const std::uint32_t material = out_.palette[value];
         WideNode made = innerNode(kAllCells, material);
         made.kind = shared::kWideSolid;
-        return {made, {0, material}};  // its colour is that of its material: never asked for
+        return {made, {0, material}};  // its color is that of its material: never asked for
     }
 
     /// `level`: the cells have an edge of 2^level voxels.

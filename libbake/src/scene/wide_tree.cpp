@@ -157,13 +157,15 @@ Result<WideTree> widen(const OctreeModel& model, std::uint32_t firstMaterial) {
         roots[i] = widenRegion(model.regions[i], {firstMaterial, tree.hasLods}, tree.pieces[1 + i]);
     });
 
-    // The top comes first and holds the regions' roots: made once for its size, and again with roots that know it.
+    // The top comes first and holds the regions' roots: made once for its size, and again with roots that
+    // know it.
     WidePiece& top = tree.pieces[0];
     TopWidener(model, roots, top).run();
     place(tree);
     if (!fits(tree.end)) {
-        return fail(ErrorCode::GpuOutOfMemory, "model '" + model.name + "' has more nodes or voxels than one "
-                                               "model on the GPU can have");
+        return fail(ErrorCode::GpuOutOfMemory, "model '" + model.name +
+                                                   "' has more nodes or voxels than one "
+                                                   "model on the GPU can have");
     }
     tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
         for (WideNode& node : tree.pieces[1 + i].nodes) move(node, tree.places[1 + i]);

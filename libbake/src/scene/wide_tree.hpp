@@ -19,7 +19,7 @@ namespace pfvox::gpu::detail {
 /// Nodes and what their indices refer to.
 struct WidePiece {
     std::vector<shared::WideNode> nodes;
-    std::vector<glm::uvec2> lods;  ///< for each node, see ModelRecord::lods; empty without
+    std::vector<glm::uvec2> lods;        ///< for each node, see ModelRecord::lods; empty without
     std::vector<std::uint8_t> values;    ///< padded to whole words
     std::vector<std::uint32_t> palette;  ///< materials of the scene
 };
@@ -36,7 +36,8 @@ struct WidePlace {
 struct WideTree {
     std::uint32_t levels = 1;  ///< the root spans 4^levels voxels
     bool hasLods = false;
-    std::vector<WidePiece> pieces;  ///< the first holds the root and all above the regions' roots, these included
+    std::vector<WidePiece>
+        pieces;  ///< the first holds the root and all above the regions' roots, these included
     std::vector<WidePlace> places;
     WidePlace end;  ///< counts of the whole model
 
@@ -52,8 +53,8 @@ constexpr std::uint32_t wideLevels(std::uint32_t depth) {
 }
 
 /// Regions are widened in parallel in the calling TBB arena. `firstMaterial` is added to all materials: a
-/// scene joins those of its assets. Precondition: the model has a region. Errors: GpuOutOfMemory when an index
-/// does not fit its field (32 bits, 29 for palettes).
+/// scene joins those of its assets. Precondition: the model has a region. Errors: GpuOutOfMemory when an
+/// index does not fit its field (32 bits, 29 for palettes).
 Result<WideTree> widen(const OctreeModel& model, std::uint32_t firstMaterial);
 
 }  // namespace pfvox::gpu::detail

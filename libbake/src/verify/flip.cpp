@@ -11,21 +11,23 @@ using Image = std::vector<glm::dvec3>;
 
 constexpr double kPi = 3.14159265358979323846;
 // Exponents and break points of the paper (sections 4.1.2 and 4.3).
-constexpr double kColourExponent = 0.7;
-constexpr double kBreakShare = 0.4;
+constexpr double kColorExponent = 0.7;
+constexpr double kBreakFraction = 0.4;
 constexpr double kBreakValue = 0.95;
 constexpr double kFeatureDegrees = 0.082;
 constexpr double kFeatureExponent = 0.5;
 
-// ---- Colour spaces, D65 ----
+// ---- Color spaces, D65 ----
 
 const glm::dmat3 kXyzFromRgb{{0.4124564, 0.2126729, 0.0193339},  // columns
                              {0.3575761, 0.7151522, 0.1191920},
                              {0.1804375, 0.0721750, 0.9503041}};
 
-glm::dvec3 white() { return kXyzFromRgb * glm::dvec3{1.0}; }
+glm::dvec3 white() {
+    return kXyzFromRgb * glm::dvec3{1.0};
+}
 
-/// Opponent colours in which the eye's acuity is known: Y, red-green, blue-yellow.
+/// Opponent colors in which the eye's acuity is known: Y, red-green, blue-yellow.
 glm::dvec3 opponentFromRgb(const glm::dvec3& rgb) {
     const glm::dvec3 xyz = kXyzFromRgb * rgb / white();
     return {116.0 * xyz.y - 16.0, 500.0 * (xyz.x - xyz.y), 200.0 * (xyz.y - xyz.z)};
@@ -35,7 +37,7 @@ glm::dvec3 rgbFromOpponent(const glm::dvec3& c) {
     return glm::inverse(kXyzFromRgb) * (glm::dvec3{y + c.y / 500.0, y, y - c.z / 200.0} * white());
 }
 
-/// CIE L*a*b*, its colours weaker where it is dark (the Hunt effect).
+/// CIE L*a*b*, its colors weaker where it is dark (the Hunt effect).
 glm::dvec3 huntLabFromRgb(const glm::dvec3& rgb) {
     const glm::dvec3 xyz = kXyzFromRgb * rgb / white();
     const auto f = [](double t) {
@@ -69,7 +71,8 @@ Filter makeFilter(int radius, Value value) {
     return filter;
 }
 
-/// Contrast sensitivity of one channel as the sum of two Gaussians over degrees: factors and widths of the paper.
+/// Contrast sensitivity of one channel as the sum of two Gaussians over degrees: factors and widths of the
+/// paper.
 struct Sensitivity {
     double a1, b1, a2, b2;
 };
@@ -77,7 +80,8 @@ constexpr std::array<Sensitivity, 3> kSensitivities{
     {{1.0, 0.0047, 0.0, 1e-5}, {1.0, 0.0053, 0.0, 1e-5}, {34.1, 0.04, 13.5, 0.025}}};
 
 Filter sensitivityFilter(const Sensitivity& s, double pixelsPerDegree) {
-    const int radius = static_cast<int>(std::ceil(3.0 * std::sqrt(0.04 / (2.0 * kPi * kPi)) * pixelsPerDegree));
+    const int radius =
+        static_cast<int>(std::ceil(3.0 * std::sqrt(0.04 / (2.0 * kPi * kPi)) * pixelsPerDegree));
     Filter filter = makeFilter(radius, [&](int x, int y) {
         const double squared = (x * x + y * y) / (pixelsPerDegree * pixelsPerDegree);
         const auto gaussian = [&](double a, double b) {
@@ -126,12 +130,13 @@ double filtered(const Image& image, const Size& size, glm::ivec2 at, int channel
 
 Image opponentImage(std::span<const glm::vec3> rgb) {
     Image image;
-    for (const glm::vec3& pixel : rgb) image.push_back(opponentFromRgb(glm::clamp(glm::dvec3{pixel}, 0.0, 1.0)));
+    for (const glm::vec3& pixel : rgb)
+        image.push_back(opponentFromRgb(glm::clamp(glm::dvec3{pixel}, 0.0, 1.0)));
     return image;
 }
 
-/// What the eye sees of the colours from its distance.
-Image seenColours(const Image& opponent, const Size& size, double pixelsPerDegree) {
+/// What the eye sees of the colors from its distance.
+Image seenColors(const Image& opponent, const Size& size, double pixelsPerDegree) {
     std::array<Filter, 3> filters;
     for (std::size_t i = 0; i < 3; ++i) filters[i] = sensitivityFilter(kSensitivities[i], pixelsPerDegree);
     Image seen;
@@ -149,10 +154,11 @@ Image seenColours(const Image& opponent, const Size& size, double pixelsPerDegre
     return seen;
 }
 
-double colourDifference(const glm::dvec3& a, const glm::dvec3& b) {
-    static const double largest = std::pow(hyab(huntLabFromRgb({0, 1, 0}), huntLabFromRgb({0, 0, 1})), kColourExponent);
-    const double difference = std::pow(hyab(a, b), kColourExponent);
-    const double breakPoint = kBreakShare * largest;
+double colorDifference(const glm::dvec3& a, const glm::dvec3& b) {
+    static const double largest =
+        std::pow(hyab(huntLabFromRgb({0, 1, 0}), huntLabFromRgb({0, 0, 1})), kColorExponent);
+    const double difference = std::pow(hyab(a, b), kColorExponent);
+    const double breakPoint = kBreakFraction * largest;
     if (difference < breakPoint) return kBreakValue / breakPoint * difference;
     return kBreakValue + (difference - breakPoint) / (largest - breakPoint) * (1.0 - kBreakValue);
 }
@@ -161,7 +167,8 @@ double colourDifference(const glm::dvec3& a, const glm::dvec3& b) {
 std::vector<glm::dvec2> featuresOf(const Image& opponent, const Size& size, double pixelsPerDegree) {
     Image luminance = opponent;
     for (glm::dvec3& pixel : luminance) pixel.x = (pixel.x + 16.0) / 116.0;
-    const std::array<Filter, 2> filters{featureFilter(false, pixelsPerDegree), featureFilter(true, pixelsPerDegree)};
+    const std::array<Filter, 2> filters{featureFilter(false, pixelsPerDegree),
+                                        featureFilter(true, pixelsPerDegree)};
     std::vector<glm::dvec2> features;
     for (int y = 0; y < size.height; ++y) {
         for (int x = 0; x < size.width; ++x) {
@@ -185,16 +192,17 @@ std::vector<float> flipOf(const FlipInput& input) {
     const Size size{static_cast<int>(input.width), static_cast<int>(input.height)};
     const Image reference = opponentImage(input.reference);
     const Image test = opponentImage(input.test);
-    const Image seenReference = seenColours(reference, size, input.pixelsPerDegree);
-    const Image seenTest = seenColours(test, size, input.pixelsPerDegree);
+    const Image seenReference = seenColors(reference, size, input.pixelsPerDegree);
+    const Image seenTest = seenColors(test, size, input.pixelsPerDegree);
     const auto featuresReference = featuresOf(reference, size, input.pixelsPerDegree);
     const auto featuresTest = featuresOf(test, size, input.pixelsPerDegree);
     std::vector<float> flip;
     for (std::size_t i = 0; i < reference.size(); ++i) {
-        const double colour = std::min(colourDifference(seenReference[i], seenTest[i]), 1.0);
+        const double color = std::min(colorDifference(seenReference[i], seenTest[i]), 1.0);
         const glm::dvec2 apart = glm::abs(featuresReference[i] - featuresTest[i]);
-        const double feature = std::pow(std::min(std::max(apart.x, apart.y) / std::sqrt(2.0), 1.0), kFeatureExponent);
-        flip.push_back(static_cast<float>(std::pow(colour, 1.0 - feature)));
+        const double feature =
+            std::pow(std::min(std::max(apart.x, apart.y) / std::sqrt(2.0), 1.0), kFeatureExponent);
+        flip.push_back(static_cast<float>(std::pow(color, 1.0 - feature)));
     }
     return flip;
 }

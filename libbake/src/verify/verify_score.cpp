@@ -107,7 +107,7 @@ void compareExposed(const VerifiedPicture& picture, VerifyScore& score) {
 
 std::uint64_t VerifyScore::tierPixels(gpu::ProbeTier tier) const {
     return static_cast<std::uint64_t>(
-        std::llround(tierShares[static_cast<std::size_t>(tier)] * static_cast<double>(surfacePixels)));
+        std::llround(tierFractions[static_cast<std::size_t>(tier)] * static_cast<double>(surfacePixels)));
 }
 
 VerifyScore scoreOf(const VerifiedPicture& picture) {
@@ -118,7 +118,7 @@ VerifyScore scoreOf(const VerifiedPicture& picture) {
     for (const VerifiedPixel& pixel : picture.pixels) {
         if (!pixel.surface) continue;
         ++score.surfacePixels;
-        score.tierShares[static_cast<std::size_t>(pixel.tier)] += 1.0;
+        score.tierFractions[static_cast<std::size_t>(pixel.tier)] += 1.0;
         if (!hasValue(pixel)) {
             ++score.withoutValue;
             continue;
@@ -128,7 +128,7 @@ VerifyScore scoreOf(const VerifiedPicture& picture) {
         materials[static_cast<std::size_t>(pixel.material)].add(pixel);
     }
     if (score.surfacePixels == 0) return score;
-    for (double& share : score.tierShares) share /= static_cast<double>(score.surfacePixels);
+    for (double& fraction : score.tierFractions) fraction /= static_cast<double>(score.surfacePixels);
     score.all = all.part();
     std::ranges::transform(tiers, score.byTier.begin(), &Sums::part);
     std::ranges::transform(materials, score.byMaterial.begin(), &Sums::part);

@@ -35,7 +35,7 @@ struct Material {
     float roughness = 1.0f;                     ///< [0, 1]
     float specular = 0.5f;                      ///< [0, 1]
     float indexOfRefraction = 1.5f;             ///< >= 1
-    float emissionStrength = 0.0f;              ///< radiance = linear base colour x strength
+    float emissionStrength = 0.0f;              ///< radiance = linear base color x strength
     float transparency = 0.0f;                  ///< [0, 1]
     float density = 0.0f;                       ///< of media, per voxel edge
     float phase = 0.0f;                         ///< Henyey-Greenstein g of media, [-1, 1]
@@ -46,8 +46,8 @@ struct Material {
 /// Rounded to what a PF_VOX file can hold.
 Material quantised(const Material& material);
 
-/// Whether nothing can be seen through a voxel of this material: neither glass nor media, no transparency, full
-/// alpha. Where in doubt it is not opaque, so that nothing behind it is taken for hidden.
+/// Whether nothing can be seen through a voxel of this material: neither glass nor media, no transparency,
+/// full alpha. Where in doubt it is not opaque, so that nothing behind it is taken for hidden.
 bool isOpaque(const Material& material);
 
 /// One placement of a model. Mirrors (negative determinant) are allowed: MagicaVoxel files contain them.

@@ -21,17 +21,18 @@ struct ConvertSettings {
 struct ConvertReport {
     std::uint64_t sourceBytes = 0;  ///< read
     std::uint64_t outputBytes = 0;  ///< written
-    std::uint64_t voxels = 0;  ///< of all models, each counted once
-    std::uint64_t hollowedVoxels = 0;  ///< of these, voxels that cannot be seen; 0 unless they were looked for
-    std::uint64_t nodes = 0;  ///< of all trees
-    std::uint64_t leaves = 0;  ///< of all trees
-    std::uint32_t models = 0;  ///< after equal ones were joined
+    std::uint64_t voxels = 0;       ///< of all models, each counted once
+    std::uint64_t hollowedVoxels =
+        0;                        ///< of these, voxels that cannot be seen; 0 unless they were looked for
+    std::uint64_t nodes = 0;      ///< of all trees
+    std::uint64_t leaves = 0;     ///< of all trees
+    std::uint32_t models = 0;     ///< after equal ones were joined
     std::uint32_t instances = 0;  ///< of models
     std::uint32_t materials = 0;  ///< after equal ones were joined
-    double importSeconds = 0.0;  ///< reading and decoding the source
-    double buildSeconds = 0.0;  ///< building the trees
-    double encodeSeconds = 0.0;  ///< laying out and compressing
-    double writeSeconds = 0.0;  ///< writing, with the sync
+    double importSeconds = 0.0;   ///< reading and decoding the source
+    double buildSeconds = 0.0;    ///< building the trees
+    double encodeSeconds = 0.0;   ///< laying out and compressing
+    double writeSeconds = 0.0;    ///< writing, with the sync
 };
 
 /// xxh3-128 of the source bytes, the settings and the versions of tool and format.

@@ -21,8 +21,8 @@ class FileBytes {
     FileBytes() = default;
     explicit FileBytes(std::size_t size)
         : data_(std::make_unique_for_overwrite<std::byte[]>(size)), size_(size) {}  ///< Uninitialised bytes.
-    std::span<std::byte> bytes() { return {data_.get(), size_}; }  ///< all of them
-    std::span<const std::byte> bytes() const { return {data_.get(), size_}; }  ///< all of them
+    std::span<std::byte> bytes() { return {data_.get(), size_}; }                   ///< all of them
+    std::span<const std::byte> bytes() const { return {data_.get(), size_}; }       ///< all of them
     void shrink(std::size_t size) { size_ = size; }  ///< Precondition: not larger than now.
 
   private:
@@ -69,8 +69,12 @@ class AtomicFile {
     Result<void> commit();
 
   private:
-    AtomicFile(std::filesystem::path file, std::filesystem::path target, std::filesystem::path temporary, int descriptor)
-        : file_(std::move(file)), target_(std::move(target)), temporary_(std::move(temporary)), descriptor_(descriptor) {}
+    AtomicFile(std::filesystem::path file, std::filesystem::path target, std::filesystem::path temporary,
+               int descriptor)
+        : file_(std::move(file)),
+          target_(std::move(target)),
+          temporary_(std::move(temporary)),
+          descriptor_(descriptor) {}
 
     std::filesystem::path file_;       ///< as it was named
     std::filesystem::path target_;     ///< without links; empty: written to as it is

@@ -3,7 +3,7 @@
 //     VoxelAsset -> [hollowSolids] -> VoxelAsset -> buildOctrees
 //
 // Optional (`--hollow`) and lossy: what was inside a solid is not kept. A voxel is hidden when it is opaque
-// and so are its six face neighbours, in the same model and across the borders of bricks and regions. Every
+// and so are its six face neighbors, in the same model and across the borders of bricks and regions. Every
 // other voxel keeps its material, and no voxel appears, vanishes or changes between opaque and transparent:
 // solids stay solid. Why hidden voxels change their material and do not vanish: docs/decisions/005-hollow.md.
 #pragma once

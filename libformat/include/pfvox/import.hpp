@@ -21,8 +21,9 @@ namespace pfvox {
 
 /// Options of the SVX importer (docs/import.md, "SVX").
 struct SvxSettings {
-    /// A voxel is solid when its density is at least this fraction of the slice's largest value, [0, 1]. The default
-    /// puts the surface where an antialiased slice has it; 0 takes every voxel whose density is not zero.
+    /// A voxel is solid when its density is at least this fraction of the slice's largest value, [0, 1]. The
+    /// default puts the surface where an antialiased slice has it; 0 takes every voxel whose density is not
+    /// zero.
     double threshold = 0.5;
 
     bool operator==(const SvxSettings&) const = default;
@@ -33,8 +34,8 @@ enum class UpAxis : std::uint8_t { Y, Z };
 
 /// Options of the OpenVDB importer (docs/import.md, "OpenVDB").
 struct VdbSettings {
-    /// Names of the grids to import, as reports show them ("density", "density[1]" for the second of two equal names).
-    /// Empty: every grid that can be a model.
+    /// Names of the grids to import, as reports show them ("density", "density[1]" for the second of two
+    /// equal names). Empty: every grid that can be a model.
     std::vector<std::string> grids;
     /// Fog volumes: a voxel is solid when it is active and its value is greater than this.
     double threshold = 0.0;

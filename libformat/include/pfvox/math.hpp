@@ -15,7 +15,9 @@ struct VoxelBox {
     glm::ivec3 min{std::numeric_limits<int>::max()};  ///< inclusive
     glm::ivec3 max{std::numeric_limits<int>::min()};  ///< exclusive
 
-    bool empty() const { return max.x <= min.x || max.y <= min.y || max.z <= min.z; }  ///< Whether no voxel is in it.
+    bool empty() const {
+        return max.x <= min.x || max.y <= min.y || max.z <= min.z;
+    }  ///< Whether no voxel is in it.
     /// Edge lengths; 64-bit, because two int32 corners can be farther apart than int32 reaches.
     glm::i64vec3 size() const { return empty() ? glm::i64vec3{0} : glm::i64vec3{max} - glm::i64vec3{min}; }
     void include(const VoxelBox& other) {

@@ -39,7 +39,8 @@ namespace pfvox {
 namespace node {
 inline constexpr std::uint32_t kFarBit = 1u << 16;  ///< set: the pointer is an index into the far table
 inline constexpr std::uint32_t kPointerShift = 17;  ///< position of the pointer
-inline constexpr std::uint32_t kMaxNearPointer = (1u << 15) - 1;  ///< nodes; what is further needs the far table
+inline constexpr std::uint32_t kMaxNearPointer =
+    (1u << 15) - 1;  ///< nodes; what is further needs the far table
 /// Child slots that are leaves.
 constexpr std::uint32_t leafMask(std::uint32_t descriptor) {
     return descriptor & 0xffu;
@@ -61,7 +62,8 @@ constexpr std::uint32_t pointer(std::uint32_t descriptor) {
 /// A tree of child descriptors. Node 0 is the root, a cube of edge 2^depth.
 struct NodeTree {
     std::uint32_t depth = 0;  ///< levels below the root; a leaf at level depth has edge 1
-    PooledVector<std::uint32_t> nodes;     ///< child descriptors; none only in the top tree of a one-region model
+    PooledVector<std::uint32_t>
+        nodes;  ///< child descriptors; none only in the top tree of a one-region model
     PooledVector<std::uint32_t> farTable;  ///< distances in nodes, for descriptors with the far bit
 
     /// Index of the first inner child of node `index`. Precondition: the node has one.
@@ -72,12 +74,12 @@ struct NodeTree {
 };
 
 /// What stands for a whole node when it covers less than a pixel: one entry for each node, the root included,
-/// in node order. Only what can be seen counts: faces of voxels that no opaque neighbour in the same model
+/// in node order. Only what can be seen counts: faces of voxels that no opaque neighbor in the same model
 /// covers.
 struct NodeLod {
-    /// R, G, B (sRGB encoded) and coverage, R in the low byte. The colour is the mean of the linear base
-    /// colours, weighted by the area of their visible faces; 0 where nothing is visible. Coverage x 255,
-    /// rounded up: the share of the node's columns of voxels that are not empty, mean of the three axes.
+    /// R, G, B (sRGB encoded) and coverage, R in the low byte. The color is the mean of the linear base
+    /// colors, weighted by the area of their visible faces; 0 where nothing is visible. Coverage x 255,
+    /// rounded up: the fraction of the node's columns of voxels that are not empty, mean of the three axes.
     std::vector<std::uint32_t> colors;
     /// Palette index of the material with the largest visible area, of equals the first; 0 where nothing is
     /// visible.

@@ -8,7 +8,7 @@
 // read probe by probe (pfvox/probe_file.hpp). What a texel means is in pfvox/probe_maths.hpp.
 //
 // Frame: world space, metres, right-handed, +Y up. A probe's maps are octahedral, +z in their middle; texel
-// (i, j) is word i + edge * j and its centre is at ((i + 0.5) / edge, (j + 0.5) / edge). What is stored as
+// (i, j) is word i + edge * j and its center is at ((i + 0.5) / edge, (j + 0.5) / edge). What is stored as
 // light is I = E / pi of indirect irradiance E at the surface that the texel sees: the light that leaves it
 // is emission + albedo * (E_direct / pi + I). Values are plain data: copy them, move them, share them for
 // reading.
@@ -42,8 +42,8 @@ enum class ProbeLayer : std::uint8_t {
     Irradiance,   ///< u32: I of a surface at the probe, by its normal, R11G11B10F, border of 1
     Moments,  ///< u32: two halves, mean of d and of d^2 with d = min(distance / momentRange, 1), border of 1
 };
-inline constexpr std::size_t kProbeLayerCount = 5;    ///< of ProbeLayer
-inline constexpr std::uint32_t kMaxProbeEdge = 8192;  ///< texels along a map
+inline constexpr std::size_t kProbeLayerCount = 5;          ///< of ProbeLayer
+inline constexpr std::uint32_t kMaxProbeResolution = 8192;  ///< texels along a map
 
 /// "depth-normal", "light", "min-depth", "irradiance", "moments".
 std::string_view toString(ProbeLayer layer);
@@ -91,7 +91,7 @@ inline constexpr std::uint32_t kLightOfEmitters = 1u << 1;    ///< emissive voxe
 inline constexpr std::uint32_t kLightOfBouncedSun = 1u << 2;  ///< sun from the second vertex of a path on
 inline constexpr std::uint32_t kLightOfDirectSun =
     1u << 3;  ///< sun at the first vertex; pfvox leaves it to the viewer
-inline constexpr std::uint32_t kLightOfSpecular = 1u << 4;  ///< paths over metal and glass
+inline constexpr std::uint32_t kLightOfSpecular = 1u << 4;   ///< paths over metal and glass
 inline constexpr std::uint32_t kKnownLight = (1u << 5) - 1;  ///< all bits that have a meaning
 
 /// A half-open range of probe indices.
@@ -100,25 +100,29 @@ struct ProbeRange {
     std::uint32_t end = 0;    ///< exclusive
 
     std::uint32_t size() const { return end - first; }  ///< Number of probes.
-    bool contains(std::uint32_t probe) const { return probe >= first && probe < end; }  ///< Whether the probe is in it.
+    bool contains(std::uint32_t probe) const {
+        return probe >= first && probe < end;
+    }  ///< Whether the probe is in it.
     bool operator==(const ProbeRange&) const = default;
 };
 
 /// Everything about a field but its probes.
 struct ProbeFieldInfo {
-    ProbeGrid grid;  ///< where probes stand
-    ProbeRange range;  ///< the probes of this file: a shard has a part of the grid's
-    ProbeResolution resolution;  ///< edges of the maps
-    DepthEncoding depth;  ///< meaning of the depth codes
+    ProbeGrid grid;                  ///< where probes stand
+    ProbeRange range;                ///< the probes of this file: a shard has a part of the grid's
+    ProbeResolution resolution;      ///< edges of the maps
+    DepthEncoding depth;             ///< meaning of the depth codes
     std::uint32_t lightContent = 0;  ///< kLightOf... bits
-    ProbeBakeSettings settings;  ///< how the light was computed
+    ProbeBakeSettings settings;      ///< how the light was computed
     ContentKey sceneHash;    ///< of the scene as it was baked: models, transforms, materials, sun, sky
     ContentKey shaderHash;   ///< of the programs that computed the light
     std::string deviceName;  ///< of the GPU and its driver; equal bits are promised for equal names only
     std::string toolName;    ///< "probe-bake 0.1.0"
     bool operator==(const ProbeFieldInfo&) const = default;
 
-    bool isWhole() const { return range == ProbeRange{0, static_cast<std::uint32_t>(grid.probeCount())}; }  ///< whole
+    bool isWhole() const {
+        return range == ProbeRange{0, static_cast<std::uint32_t>(grid.probeCount())};
+    }  ///< whole
 };
 /// Where a probe stands.
 enum class ProbeState : std::uint8_t {
@@ -137,7 +141,8 @@ struct ProbeRecord {
     /// Relative standard error of I, mean over the tiles. Nothing = unknown: no tile has two batches of paths
     /// whose spread could tell, or the probe sees no surface, or is inactive.
     std::optional<float> error;
-    float cappedTileShare = 0.0f;  ///< share of the tiles that stopped at maxSamples, when that is adaptive
+    float noisyTileFraction =
+        0.0f;  ///< fraction of the tiles that stopped at maxSamples, when that is adaptive
     /// xxh3-64 over offset, state, flags, error, share and the hashes of all layers. Writers compute it and
     /// take no notice of what stands here; readers have checked it. Equal hashes = equal probes.
     std::uint64_t hash = 0;
@@ -157,13 +162,13 @@ ProbeCounts countProbes(std::span<const ProbeRecord> records);  ///< of these
 /// One probe with its maps; a map that the resolution does not have is empty, and so are all of an inactive
 /// one.
 struct ProbeData {
-    ProbeRecord record;  ///< what is stored beside the maps
+    ProbeRecord record;    ///< what is stored beside the maps
     ContentKey inputHash;  ///< of everything that decided the content of this probe; zero = unknown
     std::vector<std::uint32_t> depthNormal;  ///< depth^2 words, row by row, see ProbeLayer
-    std::vector<std::uint32_t> light;  ///< light^2 words
-    std::vector<std::uint16_t> minDepth;  ///< (depth / 16)^2 words
-    std::vector<std::uint32_t> irradiance;  ///< (irradiance + 2)^2 words: with the border
-    std::vector<std::uint32_t> moments;  ///< (moments + 2)^2 words: with the border
+    std::vector<std::uint32_t> light;        ///< light^2 words
+    std::vector<std::uint16_t> minDepth;     ///< (depth / 16)^2 words
+    std::vector<std::uint32_t> irradiance;   ///< (irradiance + 2)^2 words: with the border
+    std::vector<std::uint32_t> moments;      ///< (moments + 2)^2 words: with the border
     bool operator==(const ProbeData&) const = default;
 
     /// The words of a layer as bytes.
@@ -183,7 +188,9 @@ struct ProximityGrid {
     glm::uvec3 counts{0u};              ///< cells along x, y, z
     std::vector<std::uint32_t> probes;  ///< kProbesPerCell a cell; kNoProbe at the end of a shorter list
 
-    std::uint64_t cellCount() const { return std::uint64_t{counts.x} * counts.y * counts.z; }  ///< of the grid
+    std::uint64_t cellCount() const {
+        return std::uint64_t{counts.x} * counts.y * counts.z;
+    }  ///< of the grid
     bool operator==(const ProximityGrid&) const = default;
 };
 
@@ -209,7 +216,8 @@ std::uint64_t hashOf(const ProbeData& probe);
 /// Whether a field can be written: domains of all values, sizes of maps, ranges, references of the proximity
 /// grid. Errors: BadValue, BadStructure, BadReference.
 Result<void> checkProbeInfo(const ProbeFieldInfo& info);
-Result<void> checkProbeData(const ProbeFieldInfo& info, std::uint32_t probe, const ProbeData& data);  ///< sizes
+Result<void> checkProbeData(const ProbeFieldInfo& info, std::uint32_t probe,
+                            const ProbeData& data);                                      ///< sizes
 Result<void> checkProximityGrid(const ProbeFieldInfo& info, const ProximityGrid& grid);  ///< references
 
 /// The bytes of a PF_PROBE file, equal for equal input. Errors: those of the checks above.

@@ -1,8 +1,8 @@
 // PooledVector: a std::vector for very many small numbers that come from a few large blocks of memory.
 //
-// The octrees of a model are tens of megabytes in hundreds of arrays. Taken one by one they cost a page fault for each
-// 4 KiB and are set to zero before they are written; that takes longer than decoding them. So all arrays of an asset may
-// share a MemoryPool, which lies on huge pages where the system has them.
+// The octrees of a model are tens of megabytes in hundreds of arrays. Taken one by one they cost a page fault
+// for each 4 KiB and are set to zero before they are written; that takes longer than decoding them. So all
+// arrays of an asset may share a MemoryPool, which lies on huge pages where the system has them.
 //
 // Unlike other vectors these leave new elements as they are: resize(n) gives n numbers of unknown value.
 // A copy of a vector has memory of its own; a moved one keeps its place in the pool.
@@ -21,8 +21,8 @@ namespace pfvox {
 /// Hands out memory and takes it back all at once, at its own end. May be used from several threads.
 class MemoryPool {
   public:
-    /// Takes a first block of `expectedBytes` now; further ones follow as they are needed. 0: blocks begin small and
-    /// grow.
+    /// Takes a first block of `expectedBytes` now; further ones follow as they are needed. 0: blocks begin
+    /// small and grow.
     explicit MemoryPool(std::size_t expectedBytes = 0);
     MemoryPool(const MemoryPool&) = delete;
     MemoryPool& operator=(const MemoryPool&) = delete;
@@ -62,9 +62,11 @@ class PoolAllocator {
     using is_always_equal = std::false_type;                        ///< pools differ
 
     PoolAllocator() = default;
-    explicit PoolAllocator(std::shared_ptr<MemoryPool> pool) : pool_(std::move(pool)) {}  ///< Takes from this pool.
+    explicit PoolAllocator(std::shared_ptr<MemoryPool> pool)
+        : pool_(std::move(pool)) {}  ///< Takes from this pool.
     template <class U>
-    explicit PoolAllocator(const PoolAllocator<U>& other) : pool_(other.pool()) {}  ///< The same pool for another type.
+    explicit PoolAllocator(const PoolAllocator<U>& other)
+        : pool_(other.pool()) {}  ///< The same pool for another type.
     /// Throws std::bad_alloc, as allocators do.
     T* allocate(std::size_t count) {
         if (count > std::size_t(-1) / sizeof(T)) throw std::bad_array_new_length();

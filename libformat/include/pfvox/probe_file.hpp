@@ -74,15 +74,16 @@ class ProbeFileReader {
 /// decodePfProbe and validatePfProbe on a file; validation needs the memory of one probe only.
 Result<ProbeField> loadPfProbe(const std::filesystem::path& file, const Limits& limits,
                                Diagnostics& diagnostics);
-std::vector<Finding> validatePfProbeFile(const std::filesystem::path& file, const Limits& limits);  ///< all of them
+std::vector<Finding> validatePfProbeFile(const std::filesystem::path& file,
+                                         const Limits& limits);  ///< all of them
 
 /// "out.pf_probe" -> "out.pf_probe.journal". Where that is longer than file names may be: the beginning of
 /// the name and a hash of it.
 std::filesystem::path probeJournalPath(const std::filesystem::path& output);
 /// How a file is begun.
 struct ProbeWriteSettings {
-    ProbeEncodeSettings encode;  ///< key and compression
-    bool resume = false;         ///< take what a journal beside the output holds; else begin a new one
+    ProbeEncodeSettings encode;    ///< key and compression
+    bool resume = false;           ///< take what a journal beside the output holds; else begin a new one
     bool replaceReadOnly = false;  ///< replace an output that is read-only, too
 };
 

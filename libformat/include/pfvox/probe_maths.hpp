@@ -15,7 +15,7 @@ inline constexpr std::uint32_t kDepthMissCode = 65535;  ///< the texel sees no s
 /// Direction -> [-1, 1]^2 and back; +z in the middle.
 glm::vec2 octEncode(glm::vec3 direction);
 glm::vec3 octDecode(glm::vec2 octahedral);  ///< The unit vector at octahedral coordinates in [-1, 1]^2.
-/// Of the centre of texel (x, y) of a map of `edge` texels.
+/// Of the center of texel (x, y) of a map of `edge` texels.
 glm::vec3 directionOfTexel(std::uint32_t x, std::uint32_t y, std::uint32_t edge);
 /// Word index of the texel that a direction falls into.
 std::uint32_t texelIndex(glm::vec3 direction, std::uint32_t edge);

@@ -1,5 +1,6 @@
-// Probe settings: how the light of a probe field was computed. forEachProbeSetting() is the one list of them: the bytes of
-// files, content hashes, reports and comparisons are made from it, so that a setting that is added there is in all of them.
+// Probe settings: how the light of a probe field was computed. forEachProbeSetting() is the one list of them:
+// the bytes of files, content hashes, reports and comparisons are made from it, so that a setting that is
+// added there is in all of them.
 #pragma once
 
 #include <cstdint>
@@ -10,21 +11,23 @@
 
 namespace pfvox {
 
-inline constexpr std::uint32_t kUnlimitedBounces = 0xffffffffu;  ///< of ProbeBakeSettings::maxBounces: until a path has no weight
+inline constexpr std::uint32_t kUnlimitedBounces =
+    0xffffffffu;  ///< of ProbeBakeSettings::maxBounces: until a path has no weight
 
 /// Optional ones are unknown where there is nothing: files of PF_PROBE 1.0 do not keep them.
 struct ProbeBakeSettings {
-    std::uint64_t seed = 0;                   ///< of the random numbers
-    std::uint32_t tracedEdge = 0;             ///< edge of the maps that were traced, before any reduction
-    std::uint32_t minSamples = 0;             ///< paths a texel
-    std::uint32_t maxSamples = 0;             ///< equal to minSamples when not adaptive
-    std::optional<std::uint32_t> maxBounces;  ///< reflections of a path; kUnlimitedBounces = no limit but roulette
-    float noiseTarget = 0.0f;                 ///< relative standard error at which a tile stops; 0 = not adaptive
-    std::optional<float> noiseFloor;          ///< radiance under which errors are relative to it
-    std::optional<std::uint32_t> sampling;    ///< which light paths look for: a LightSampling
-    std::optional<bool> stratified;           ///< Sobol points for the first two vertices
-    std::optional<bool> relocate;             ///< probes were moved out of solids
-    std::optional<std::uint32_t> filter;      ///< revision of the filter that light maps went through; 0 = none
+    std::uint64_t seed = 0;              ///< of the random numbers
+    std::uint32_t tracedResolution = 0;  ///< of the maps that were traced, before any reduction
+    std::uint32_t minSamples = 0;        ///< paths a texel
+    std::uint32_t maxSamples = 0;        ///< equal to minSamples when not adaptive
+    std::optional<std::uint32_t>
+        maxBounces;                   ///< reflections of a path; kUnlimitedBounces = no limit but roulette
+    float noiseTarget = 0.0f;         ///< relative standard error at which a tile stops; 0 = not adaptive
+    std::optional<float> noiseFloor;  ///< radiance under which errors are relative to it
+    std::optional<std::uint32_t> sampling;  ///< which light paths look for: a LightSampling
+    std::optional<bool> stratified;         ///< Sobol points for the first two vertices
+    std::optional<bool> relocate;           ///< probes were moved out of solids
+    std::optional<std::uint32_t> filter;    ///< revision of the filter that light maps went through; 0 = none
     bool operator==(const ProbeBakeSettings&) const = default;
 
     bool isAdaptive() const { return noiseTarget > 0.0f; }  ///< Whether tiles stopped by their noise.
@@ -43,7 +46,7 @@ inline constexpr std::uint32_t kFilterId = 6;   ///< ProbeSetting::id of filter
 template <class Visit, class... Settings>
 void forEachProbeSetting(const Visit& visit, Settings&... of) {
     visit(ProbeSetting{0, "seed", "--seed"}, of.seed...);
-    visit(ProbeSetting{0, "tracedEdge", "traced edge"}, of.tracedEdge...);
+    visit(ProbeSetting{0, "tracedResolution", "traced resolution"}, of.tracedResolution...);
     visit(ProbeSetting{0, "minSamples", "least samples"}, of.minSamples...);
     visit(ProbeSetting{0, "maxSamples", "most samples"}, of.maxSamples...);
     visit(ProbeSetting{0, "noiseTarget", "--noise"}, of.noiseTarget...);
@@ -55,13 +58,15 @@ void forEachProbeSetting(const Visit& visit, Settings&... of) {
     visit(ProbeSetting{kFilterId, "filter", "--filter"}, of.filter...);
 }
 
-/// A setting of two fields that is not the same, in words: "--bounces 2" and "--bounces 4", or "--bounces unknown".
+/// A setting of two fields that is not the same, in words: "--bounces 2" and "--bounces 4", or "--bounces
+/// unknown".
 struct ProbeSettingDifference {
     std::string first;   ///< of the first field
     std::string second;  ///< of the second
 };
 /// In the order of forEachProbeSetting(); empty = the same settings. Unknown and known are not the same.
-std::vector<ProbeSettingDifference> differencesOf(const ProbeBakeSettings& first, const ProbeBakeSettings& second);
+std::vector<ProbeSettingDifference> differencesOf(const ProbeBakeSettings& first,
+                                                  const ProbeBakeSettings& second);
 
 /// The settings that are not in INFO, in words: "--bounces unlimited, noise floor 0.01, ...".
 std::string probeSettingsText(const ProbeBakeSettings& settings);

@@ -4,10 +4,10 @@
 //
 // Candidates of a cell are the active probes within two diagonals of the probe grid's cell. Its samples are
 // surface points and its eight corners. A probe sees a surface point when its texels around agree in distance
-// and normal (mapSeesSurface), and a corner when its texel there sees nothing nearer. The first probe of a cell
-// is the one that sees most samples, each next one the one that sees most of those that no earlier one sees, both
-// weighed by how fine its picture of them is (the root of texels a square metre of the surface); of equals the finer
-// one, then the one with the smaller index. Cells without surface name no probe.
+// and normal (mapSeesSurface), and a corner when its texel there sees nothing nearer. The first probe of a
+// cell is the one that sees most samples, each next one the one that sees most of those that no earlier one
+// sees, both weighed by how fine its picture of them is (the root of texels a square metre of the surface);
+// of equals the finer one, then the one with the smaller index. Cells without surface name no probe.
 //
 // The work grows with cells that hold surface times their candidates, never with cells times probes; memory
 // holds the maps of as many probes as there are threads.
@@ -34,8 +34,8 @@ struct CellSurfaces {
     std::vector<std::size_t> firstOfCell;  ///< one for each of them and one more: where its samples begin
     std::vector<SurfaceSample> samples;    ///< cell by cell
 };
-/// The cell that a point of a surface belongs to; none outside of the box. A point on a face between two cells belongs
-/// to the one that its surface is seen from.
+/// The cell that a point of a surface belongs to; none outside of the box. A point on a face between two
+/// cells belongs to the one that its surface is seen from.
 std::optional<std::uint32_t> cellOfSurface(const ProximityGrid& shape, const SurfaceSample& sample);
 
 /// Sorts samples into cells, each in the order given; those outside the box are left out.

@@ -33,10 +33,12 @@ struct Sun {
 
 /// Radiance from infinitely far away, by the height of the direction. All three the same = a constant sky.
 struct Sky {
-    glm::dvec3 zenith{0.30, 0.48, 0.80};  ///< radiance straight up
+    glm::dvec3 zenith{0.30, 0.48, 0.80};   ///< radiance straight up
     glm::dvec3 horizon{0.72, 0.80, 0.88};  ///< radiance
-    glm::dvec3 ground{0.24, 0.23, 0.22};  ///< radiance straight down
-    bool isConstant() const { return zenith == horizon && horizon == ground; }  ///< Whether it is the same everywhere.
+    glm::dvec3 ground{0.24, 0.23, 0.22};   ///< radiance straight down
+    bool isConstant() const {
+        return zenith == horizon && horizon == ground;
+    }  ///< Whether it is the same everywhere.
     bool operator==(const Sky&) const = default;
 };
 
@@ -52,13 +54,13 @@ struct ProbeGridRequest {
 /// A PF_VOX file and where it stands. At most one of cubeEdgeMetres and metresPerVoxel is set; without both
 /// the file keeps its own voxel size.
 struct SceneModel {
-    std::string path;  ///< as written, UTF-8; relative paths count from the scene file
-    std::string name = {};  ///< unique, or empty
+    std::string path;                 ///< as written, UTF-8; relative paths count from the scene file
+    std::string name = {};            ///< unique, or empty
     glm::dvec3 translateMetres{0.0};  ///< world space
-    glm::dvec3 rotateRadians{0.0};             ///< about x, then y, then z, the axes fixed: R = Rz Ry Rx
+    glm::dvec3 rotateRadians{0.0};    ///< about x, then y, then z, the axes fixed: R = Rz Ry Rx
     std::optional<glm::dvec3> cubeEdgeMetres;  ///< scaleVec: world edges of the file's octree cube
-    std::optional<double> metresPerVoxel;  ///< edge of a voxel; default: the file's
-    bool visible = true;  ///< false: not loaded
+    std::optional<double> metresPerVoxel;      ///< edge of a voxel; default: the file's
+    bool visible = true;                       ///< false: not loaded
     bool operator==(const SceneModel&) const = default;
 };
 /// What a scene.toml says.
@@ -132,8 +134,8 @@ Affine worldFromAsset(const SceneModel& model, const OctreeAsset& asset);
 
 /// A box in the world, in metres. Empty when min > max.
 struct WorldBounds {
-    glm::dvec3 min{std::numeric_limits<double>::infinity()};  ///< metres
-    glm::dvec3 max{-std::numeric_limits<double>::infinity()};  ///< metres
+    glm::dvec3 min{std::numeric_limits<double>::infinity()};                        ///< metres
+    glm::dvec3 max{-std::numeric_limits<double>::infinity()};                       ///< metres
     bool empty() const { return min.x > max.x || min.y > max.y || min.z > max.z; }  ///< nothing included
     void include(const glm::dvec3& point);  ///< Grows to hold the point.
 };

@@ -1,5 +1,5 @@
-// Threads: how many the system leaves to this process. Libraries below us end the program when one of theirs cannot be started,
-// so whoever uses them asks before.
+// Threads: how many the system leaves to this process. Libraries below us end the program when one of theirs
+// cannot be started, so whoever uses them asks before.
 #pragma once
 
 namespace pfvox {

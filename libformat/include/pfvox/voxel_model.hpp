@@ -43,14 +43,16 @@ struct Brick {
         occupancy[morton >> 6] |= std::uint64_t{1} << (morton & 63u);
         materials[morton] = material;
     }  ///< Makes it solid.
-    void clear(std::uint32_t morton) { occupancy[morton >> 6] &= ~(std::uint64_t{1} << (morton & 63u)); }  ///< Empty.
+    void clear(std::uint32_t morton) {
+        occupancy[morton >> 6] &= ~(std::uint64_t{1} << (morton & 63u));
+    }  ///< Empty.
 };
 
 /// A voxel of a list: 8 bytes. Where the list begins is told beside it.
 struct PackedVoxel {
     std::uint16_t x, y, z;   ///< within its region
     MaterialIndex material;  ///< what it is made of
-};  ///< from where the list begins
+};                           ///< from where the list begins
 
 /// A voxel in a region. Address: the Morton code of its coordinates in the region; bits 9 to 23 are the code
 /// of the cell, bits 0 to 8 that in the brick.

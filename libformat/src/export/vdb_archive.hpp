@@ -10,8 +10,8 @@
 
 namespace pfvox::vdb_export {
 
-/// A file with grid offsets, compressed as OpenVDB does by default. Grids that share a tree store it once. OpenVDB
-/// writes a random identifier into the header; a hash of all other bytes takes its place.
+/// A file with grid offsets, compressed as OpenVDB does by default. Grids that share a tree store it once.
+/// OpenVDB writes a random identifier into the header; a hash of all other bytes takes its place.
 std::vector<std::byte> writeVdb(const openvdb::GridCPtrVec& grids);
 
 }  // namespace pfvox::vdb_export

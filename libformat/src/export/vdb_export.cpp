@@ -1,4 +1,5 @@
-// The way through this folder: octrees -> grids (vdb_grids) -> instances that share them -> a file (vdb_archive).
+// The way through this folder: octrees -> grids (vdb_grids) -> instances that share them -> a file
+// (vdb_archive).
 #include "export/vdb_export.hpp"
 
 #include <fmt/format.h>
@@ -24,12 +25,12 @@ Affine worldFromIndex(const Instance& instance) {
     return affine;
 }
 
-/// From three columns and a translation. Scale and translation go in one after the other: OpenVDB takes a matrix of both
-/// apart by a subtraction that loses digits.
+/// From three columns and a translation. Scale and translation go in one after the other: OpenVDB takes a
+/// matrix of both apart by a subtraction that loses digits.
 openvdb::math::Transform::Ptr linearTransform(const Affine& affine) {
     using openvdb::math::Transform;
-    const bool diagonal = affine[0].y == 0.0 && affine[0].z == 0.0 && affine[1].x == 0.0 && affine[1].z == 0.0 &&
-                          affine[2].x == 0.0 && affine[2].y == 0.0;
+    const bool diagonal = affine[0].y == 0.0 && affine[0].z == 0.0 && affine[1].x == 0.0 &&
+                          affine[1].z == 0.0 && affine[2].x == 0.0 && affine[2].y == 0.0;
     openvdb::math::Mat4d matrix = openvdb::math::Mat4d::identity();
     // OpenVDB multiplies row vectors from the left: its rows are our columns.
     for (int row = 0; row < 3; ++row)
@@ -58,10 +59,11 @@ Result<openvdb::math::Transform::Ptr> transformOf(const Instance& instance, std:
     } catch (const openvdb::ArithmeticError&) {
         // Falls through: OpenVDB asks for an inverse.
     }
-    return fail(ErrorCode::UnsupportedFeature,
-                fmt::format("instance {} ('{}') is flattened, or its voxels are too small: OpenVDB needs a volume of "
-                            "more than 1e-15 cubic metres a voxel",
-                            index, instance.name));
+    return fail(
+        ErrorCode::UnsupportedFeature,
+        fmt::format("instance {} ('{}') is flattened, or its voxels are too small: OpenVDB needs a volume of "
+                    "more than 1e-15 cubic metres a voxel",
+                    index, instance.name));
 }
 
 void setText(openvdb::MetaMap& map, std::string_view key, std::string_view value) {
@@ -93,7 +95,8 @@ class VdbExport {
         const bool first = !model;
         if (first) {
             PFVOX_TRY(ModelGrids, grids,
-                      vdb_export::makeGrids(asset_.models[instance.model], asset_.materials, limits_, memoryBytes_));
+                      vdb_export::makeGrids(asset_.models[instance.model], asset_.materials, limits_,
+                                            memoryBytes_));
             model = std::move(grids);
         }
         if (model->material == nullptr) return false;
@@ -108,8 +111,8 @@ class VdbExport {
 
     /// A grid of its own that shares the tree of `source`.
     template <class GridT>
-    openvdb::GridBase& addGrid(GridT& source, const char* name, std::string_view role, const Instance& instance,
-                               const openvdb::math::Transform::Ptr& transform) {
+    openvdb::GridBase& addGrid(GridT& source, const char* name, std::string_view role,
+                               const Instance& instance, const openvdb::math::Transform::Ptr& transform) {
         const typename GridT::Ptr grid = source.copy();
         grid->setTransform(transform);  // a copy of it would lose digits
         grid->setName(name);
@@ -143,8 +146,9 @@ class VdbExport {
                               fmt::format("{} models are shown by no instance and are left out", unplaced));
         }
         if (emptyInstances > 0) {
-            diagnostics_.note("export-vdb-empty",
-                              fmt::format("{} instances of models without voxels are left out", emptyInstances));
+            diagnostics_.note(
+                "export-vdb-empty",
+                fmt::format("{} instances of models without voxels are left out", emptyInstances));
         }
         if (!asset_.cameras.empty()) {
             diagnostics_.note("export-vdb-cameras", "cameras have no place in a .vdb file");
@@ -162,7 +166,8 @@ class VdbExport {
 }  // namespace
 
 /// The edge that no exception crosses.
-Result<std::vector<std::byte>> exportVdb(const OctreeAsset& asset, const Limits& limits, Diagnostics& diagnostics) {
+Result<std::vector<std::byte>> exportVdb(const OctreeAsset& asset, const Limits& limits,
+                                         Diagnostics& diagnostics) {
     try {
         return VdbExport(asset, limits, diagnostics).run();
     } catch (const std::bad_alloc&) {

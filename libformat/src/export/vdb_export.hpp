@@ -10,6 +10,7 @@
 namespace pfvox::vdb_export {
 
 /// See exportVdb in pfvox/export.hpp. No exception leaves it.
-Result<std::vector<std::byte>> exportVdb(const OctreeAsset& asset, const Limits& limits, Diagnostics& diagnostics);
+Result<std::vector<std::byte>> exportVdb(const OctreeAsset& asset, const Limits& limits,
+                                         Diagnostics& diagnostics);
 
 }  // namespace pfvox::vdb_export

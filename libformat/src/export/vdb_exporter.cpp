@@ -5,7 +5,8 @@
 
 namespace pfvox {
 
-Result<std::vector<std::byte>> exportVdb(const OctreeAsset& asset, const Limits& limits, Diagnostics& diagnostics) {
+Result<std::vector<std::byte>> exportVdb(const OctreeAsset& asset, const Limits& limits,
+                                         Diagnostics& diagnostics) {
     PFVOX_TRY(const VdbModule*, module, vdbModule());
     return module->exportAsset(asset, limits, reportTo(diagnostics));
 }

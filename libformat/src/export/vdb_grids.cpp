@@ -18,7 +18,9 @@ using openvdb::Coord;
 /// As far as the importer goes, for the same reason: sums of coordinates must fit int32.
 constexpr int kLargestCoordinate = 1 << 30;
 
-Coord coordOf(glm::ivec3 p) { return {p.x, p.y, p.z}; }
+Coord coordOf(glm::ivec3 p) {
+    return {p.x, p.y, p.z};
+}
 
 /// Level of the tile of VDB that is a cube of this edge, 0 where there is none.
 openvdb::Index tileLevel(glm::ivec3 corner, std::uint32_t edgeLog2) {
@@ -35,12 +37,14 @@ class TreeWriter {
         if (const openvdb::Index level = tileLevel(corner, edgeLog2); level != 0) {
             accessor_.addTile(level, coordOf(corner), label, /*state=*/true);
         } else if (edgeLog2 >= kBrickEdgeLog2) {
-            tree_.fill(openvdb::CoordBBox::createCube(coordOf(corner), 1 << edgeLog2), label, /*active=*/true);
+            tree_.fill(openvdb::CoordBBox::createCube(coordOf(corner), 1 << edgeLog2), label,
+                       /*active=*/true);
         } else {
             const int edge = 1 << edgeLog2;
             for (int x = 0; x < edge; ++x)
                 for (int y = 0; y < edge; ++y)
-                    for (int z = 0; z < edge; ++z) accessor_.setValueOn(coordOf(corner).offsetBy(x, y, z), label);
+                    for (int z = 0; z < edge; ++z)
+                        accessor_.setValueOn(coordOf(corner).offsetBy(x, y, z), label);
         }
     }
 
@@ -64,8 +68,9 @@ Result<void> fillMaterials(const OctreeModel& model, const Limits& limits, openv
     const VoxelBox box = model.bounds;
     if (glm::any(glm::lessThan(box.min, glm::ivec3{-kLargestCoordinate})) ||
         glm::any(glm::greaterThan(box.max, glm::ivec3{kLargestCoordinate}))) {
-        return fail(ErrorCode::LimitExceeded,
-                    fmt::format("model \"{}\" has voxels beyond 2^30, which a .vdb file cannot place", model.name));
+        return fail(
+            ErrorCode::LimitExceeded,
+            fmt::format("model \"{}\" has voxels beyond 2^30, which a .vdb file cannot place", model.name));
     }
     TreeWriter writer(tree);
     for (const OctreeRegion& region : model.regions) {
@@ -85,7 +90,8 @@ Result<void> fillMaterials(const OctreeModel& model, const Limits& limits, openv
     return {};
 }
 
-openvdb::Vec3STree::Ptr colorTree(const openvdb::Int32Tree& labels, const std::vector<openvdb::Vec3s>& colors) {
+openvdb::Vec3STree::Ptr colorTree(const openvdb::Int32Tree& labels,
+                                  const std::vector<openvdb::Vec3s>& colors) {
     auto tree = std::make_shared<openvdb::Vec3STree>(labels, openvdb::Vec3s(0.0f), openvdb::TopologyCopy());
     const auto colorOf = [&](std::int32_t label) { return colors[static_cast<std::size_t>(label - 1)]; };
     for (auto leaf = tree->beginLeaf(); leaf; ++leaf) {
@@ -106,8 +112,8 @@ float linearOf(std::uint8_t srgb) {
     return static_cast<float>(shared::linearFromSrgb(srgb / 255.0));
 }
 
-Result<ModelGrids> makeGrids(const OctreeModel& model, const std::vector<Material>& materials, const Limits& limits,
-                             std::uint64_t& memoryBytes) {
+Result<ModelGrids> makeGrids(const OctreeModel& model, const std::vector<Material>& materials,
+                             const Limits& limits, std::uint64_t& memoryBytes) {
     ModelGrids grids;
     if (model.voxelCount == 0) return grids;
     auto labels = std::make_shared<openvdb::Int32Tree>(0);

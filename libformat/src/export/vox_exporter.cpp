@@ -1,4 +1,5 @@
-// The way through this folder: regions of octrees -> parts of at most 256^3 -> models, nodes and materials of a .vox file.
+// The way through this folder: regions of octrees -> parts of at most 256^3 -> models, nodes and materials of
+// a .vox file.
 #include <fmt/format.h>
 
 #include <array>
@@ -20,8 +21,12 @@ using vox_export::Dict;
 constexpr std::size_t kMaxMaterials = 255;
 
 /// From our frame (y up) to MagicaVoxel's (z up): (x, y, z) -> (x, -z, y).
-glm::i64vec3 voxFromOurs(glm::i64vec3 p) { return {p.x, -p.z, p.y}; }
-glm::i64vec3 oursFromVox(glm::i64vec3 p) { return {p.x, p.z, -p.y}; }
+glm::i64vec3 voxFromOurs(glm::i64vec3 p) {
+    return {p.x, -p.z, p.y};
+}
+glm::i64vec3 oursFromVox(glm::i64vec3 p) {
+    return {p.x, p.z, -p.y};
+}
 
 /// A region of a model, as one model of the .vox file.
 struct Part {
@@ -35,7 +40,9 @@ struct GridPlacement {
     std::array<glm::i64vec3, 3> columns;
     glm::i64vec3 translation;
 
-    glm::i64vec3 rotate(glm::i64vec3 v) const { return columns[0] * v.x + columns[1] * v.y + columns[2] * v.z; }
+    glm::i64vec3 rotate(glm::i64vec3 v) const {
+        return columns[0] * v.x + columns[1] * v.y + columns[2] * v.z;
+    }
 };
 
 Result<GridPlacement> gridPlacement(const Instance& instance, std::size_t index, double voxelSizeMetres) {
@@ -48,7 +55,8 @@ Result<GridPlacement> gridPlacement(const Instance& instance, std::size_t index,
             const double value = instance.worldFromModel[column][row] / voxelSizeMetres;
             const double whole = std::round(value);
             exact = exact && std::abs(value - whole) < kTolerance && std::abs(whole) < 1e9;
-            auto& target = column < 3 ? placement.columns[static_cast<std::size_t>(column)] : placement.translation;
+            auto& target =
+                column < 3 ? placement.columns[static_cast<std::size_t>(column)] : placement.translation;
             target[row] = exact ? static_cast<std::int64_t>(whole) : 0;
         }
     }
@@ -62,10 +70,12 @@ Result<GridPlacement> gridPlacement(const Instance& instance, std::size_t index,
         exact = exact && inColumn == 1 && inRow == 1;
     }
     if (!exact) {
-        return fail(ErrorCode::UnsupportedFeature,
-                    fmt::format("instance {} ('{}') is not turned by quarter turns and moved by whole voxels of {} m: "
-                                "a .vox file cannot place it",
-                                index, instance.name, voxelSizeMetres));
+        return fail(
+            ErrorCode::UnsupportedFeature,
+            fmt::format(
+                "instance {} ('{}') is not turned by quarter turns and moved by whole voxels of {} m: "
+                "a .vox file cannot place it",
+                index, instance.name, voxelSizeMetres));
     }
     return placement;
 }
@@ -94,8 +104,10 @@ glm::i64vec3 voxTranslation(const GridPlacement& placement, const Part& part) {
 }
 
 /// SIZE and XYZI of one region.
-Part writePart(const OctreeModel& model, const OctreeRegion& region, std::uint32_t voxModel, ChunkWriter& chunks) {
-    const Part part{.corner = glm::i64vec3{region.bounds.min}, .size = region.bounds.size(), .voxModel = voxModel};
+Part writePart(const OctreeModel& model, const OctreeRegion& region, std::uint32_t voxModel,
+               ChunkWriter& chunks) {
+    const Part part{
+        .corner = glm::i64vec3{region.bounds.min}, .size = region.bounds.size(), .voxModel = voxModel};
     chunks.add("SIZE", Content().i32(part.size.x).i32(part.size.z).i32(part.size.y));
     Content voxels;
     voxels.i32(static_cast<std::int64_t>(region.voxelCount));
@@ -128,11 +140,13 @@ void writeNode(const Instance& instance, const GridPlacement& placement, const P
     chunks.add("nSHP", Content().i32(id + 1).dict({}).i32(1).i32(part.voxModel).dict({}));
 }
 
-Result<void> writeGraph(const OctreeAsset& asset, const std::vector<std::vector<Part>>& parts, ChunkWriter& chunks) {
+Result<void> writeGraph(const OctreeAsset& asset, const std::vector<std::vector<Part>>& parts,
+                        ChunkWriter& chunks) {
     constexpr int kFirstInstanceNode = 2;
     Content group;
     std::int64_t count = 0;
-    for (const Instance& instance : asset.instances) count += static_cast<std::int64_t>(parts[instance.model].size());
+    for (const Instance& instance : asset.instances)
+        count += static_cast<std::int64_t>(parts[instance.model].size());
     group.i32(1).dict({}).i32(count);
     for (std::int64_t i = 0; i < count; ++i) group.i32(kFirstInstanceNode + 2 * i);
     chunks.add("nTRN", Content().i32(0).dict({}).i32(1).i32(-1).i32(-1).i32(1).dict({}));
@@ -159,13 +173,15 @@ void writeMaterials(const OctreeAsset& asset, ChunkWriter& chunks) {
     }
     Content palette;
     for (std::size_t i = 0; i < kMaxMaterials + 1; ++i) {
-        const glm::u8vec4 c = i < asset.materials.size() ? asset.materials[i].baseColor : glm::u8vec4{0, 0, 0, 255};
+        const glm::u8vec4 c =
+            i < asset.materials.size() ? asset.materials[i].baseColor : glm::u8vec4{0, 0, 0, 255};
         palette.byte(c.x).byte(c.y).byte(c.z).byte(c.w);
     }
     chunks.add("RGBA", palette);
     for (std::size_t i = 0; i < asset.materials.size(); ++i) {
-        chunks.add("MATL",
-                   Content().i32(static_cast<std::int64_t>(i) + 1).dict(vox_export::matlOf(asset.materials[i])));
+        chunks.add(
+            "MATL",
+            Content().i32(static_cast<std::int64_t>(i) + 1).dict(vox_export::matlOf(asset.materials[i])));
     }
 }
 
@@ -173,8 +189,8 @@ void writeMaterials(const OctreeAsset& asset, ChunkWriter& chunks) {
 
 Result<std::vector<std::byte>> exportVox(const OctreeAsset& asset, Diagnostics& diagnostics) {
     if (asset.materials.size() > kMaxMaterials) {
-        return fail(ErrorCode::LimitExceeded,
-                    fmt::format("{} materials; a .vox file has room for {}", asset.materials.size(), kMaxMaterials));
+        return fail(ErrorCode::LimitExceeded, fmt::format("{} materials; a .vox file has room for {}",
+                                                          asset.materials.size(), kMaxMaterials));
     }
     ChunkWriter chunks;
     std::vector<std::vector<Part>> parts(asset.models.size());

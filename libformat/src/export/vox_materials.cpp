@@ -11,13 +11,20 @@ namespace {
 
 const char* typeName(MaterialType type) {
     switch (type) {
-        case MaterialType::Metal: return "_metal";
-        case MaterialType::Glass: return "_glass";
-        case MaterialType::Emit: return "_emit";
-        case MaterialType::Plastic: return "_plastic";
-        case MaterialType::Blend: return "_blend";
-        case MaterialType::Media: return "_media";
-        case MaterialType::Diffuse: break;
+        case MaterialType::Metal:
+            return "_metal";
+        case MaterialType::Glass:
+            return "_glass";
+        case MaterialType::Emit:
+            return "_emit";
+        case MaterialType::Plastic:
+            return "_plastic";
+        case MaterialType::Blend:
+            return "_blend";
+        case MaterialType::Media:
+            return "_media";
+        case MaterialType::Diffuse:
+            break;
     }
     return "_diffuse";
 }

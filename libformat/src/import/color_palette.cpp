@@ -20,7 +20,7 @@ glm::u8vec3 colorOf(std::uint32_t code) {
             static_cast<std::uint8_t>(channelOf(code, 2))};
 }
 
-/// A group of colours: a range of the array that medianCut() sorts.
+/// A group of colors: a range of the array that medianCut() sorts.
 struct Group {
     std::size_t begin = 0;
     std::size_t end = 0;
@@ -53,7 +53,7 @@ Group makeGroup(std::span<const std::uint32_t> codes, std::size_t begin, std::si
     return group;
 }
 
-/// Rearranges `codes` into `count` consecutive groups of close colours.
+/// Rearranges `codes` into `count` consecutive groups of close colors.
 std::vector<Group> medianCut(std::span<std::uint32_t> codes, std::size_t count) {
     std::priority_queue<Group> queue;
     queue.push(makeGroup(codes, 0, codes.size()));

@@ -1,5 +1,5 @@
 // Materials for sources that tell their voxels apart by number only (SVX material ids, integer VDB grids):
-// such a number has no colour, so each gets one that differs from its neighbours' and is always the same.
+// such a number has no color, so each gets one that differs from its neighbors' and is always the same.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace pfvox::import {
 
-/// A diffuse material with a colour that follows from `label` alone.
+/// A diffuse material with a color that follows from `label` alone.
 Material labelMaterial(std::int64_t label, std::string name);
 
 }  // namespace pfvox::import

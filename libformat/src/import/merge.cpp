@@ -48,9 +48,9 @@ struct Piece {
     MaterialIndex material;  ///< of that cube
 };
 
-/// Cells come in Morton order, so eight solid ones of one parent stand together at the end of the list once the last has
-/// come: they become one cube, and eight such cubes again one, so that little is left to write voxel by voxel where
-/// the cubes do not lie on the grid of cells.
+/// Cells come in Morton order, so eight solid ones of one parent stand together at the end of the list once
+/// the last has come: they become one cube, and eight such cubes again one, so that little is left to write
+/// voxel by voxel where the cubes do not lie on the grid of cells.
 void joinLastCubes(std::vector<Piece>& pieces, std::size_t first) {
     constexpr std::size_t kChildren = 8;
     while (pieces.size() - first >= kChildren) {
@@ -79,7 +79,8 @@ std::vector<Piece> piecesOf(const VoxelModel& model) {
     for (const auto& region : model.regions()) {
         const glm::i64vec3 origin = glm::i64vec3{region->coord()} * std::int64_t{kRegionEdge};
         if (const auto material = region->uniform()) {
-            pieces.push_back({.corner = origin, .brick = nullptr, .edge = kRegionEdge, .material = *material});
+            pieces.push_back(
+                {.corner = origin, .brick = nullptr, .edge = kRegionEdge, .material = *material});
             continue;
         }
         const std::size_t first = pieces.size();
@@ -160,7 +161,8 @@ std::optional<GridTransform> gridTransformOf(const glm::dmat4& matrix) {
 }
 
 bool isHidden(const VoxelAsset& asset, const Instance& instance) {
-    return instance.hidden || (instance.layer >= 0 && asset.layers.at(static_cast<std::size_t>(instance.layer)).hidden);
+    return instance.hidden ||
+           (instance.layer >= 0 && asset.layers.at(static_cast<std::size_t>(instance.layer)).hidden);
 }
 
 /// Where the voxels of every instance go on the grid of the first.
@@ -171,13 +173,17 @@ Result<std::vector<PlacedModel>> placeModels(const VoxelAsset& asset) {
         const Instance& instance = asset.instances[i];
         const auto transform = gridTransformOf(firstFromWorld * glm::dmat4{instance.worldFromModel});
         const VoxelBox box = asset.models[instance.model].bounds();
-        const bool near = box.empty() || (glm::all(glm::greaterThan(glm::dvec3{box.min}, glm::dvec3{-kLargestTranslation})) &&
-                                          glm::all(glm::lessThan(glm::dvec3{box.max}, glm::dvec3{kLargestTranslation})));
+        const bool near =
+            box.empty() ||
+            (glm::all(glm::greaterThan(glm::dvec3{box.min}, glm::dvec3{-kLargestTranslation})) &&
+             glm::all(glm::lessThan(glm::dvec3{box.max}, glm::dvec3{kLargestTranslation})));
         if (!transform || !near) {
-            return fail(ErrorCode::UnsupportedFeature,
-                        fmt::format("instance {} ('{}') is not turned by quarter turns and moved by whole voxels against "
-                                    "the first ('{}'), or too far away: they do not share a grid; import without merging",
-                                    i, instance.name, asset.instances.front().name));
+            return fail(
+                ErrorCode::UnsupportedFeature,
+                fmt::format(
+                    "instance {} ('{}') is not turned by quarter turns and moved by whole voxels against "
+                    "the first ('{}'), or too far away: they do not share a grid; import without merging",
+                    i, instance.name, asset.instances.front().name));
         }
         placed.push_back({.model = instance.model, .mergedFromModel = *transform});
     }
@@ -219,8 +225,9 @@ Result<void> mergeAsset(VoxelAsset& asset, const Limits& limits, Diagnostics& di
     const std::size_t count = asset.instances.size();
     std::erase_if(asset.instances, [&](const Instance& instance) { return isHidden(asset, instance); });
     if (asset.instances.empty()) {
-        return fail(ErrorCode::NothingToConvert,
-                    fmt::format("all {} instances are hidden; import hidden ones too (includeHidden)", count));
+        return fail(
+            ErrorCode::NothingToConvert,
+            fmt::format("all {} instances are hidden; import hidden ones too (includeHidden)", count));
     }
     if (asset.models.size() == 1 && asset.instances.size() == 1) return {};
     PFVOX_TRY(const auto, placed, placeModels(asset));

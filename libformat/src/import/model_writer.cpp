@@ -27,7 +27,8 @@ std::uint64_t countVoxels(const VoxelRegion::Cell& cell) {
     if (cell.material) return kBrickVoxels;
     std::uint64_t count = 0;
     if (cell.brick == nullptr) return count;
-    for (const std::uint64_t word : cell.brick->occupancy) count += static_cast<std::uint64_t>(std::popcount(word));
+    for (const std::uint64_t word : cell.brick->occupancy)
+        count += static_cast<std::uint64_t>(std::popcount(word));
     return count;
 }
 

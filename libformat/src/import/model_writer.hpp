@@ -13,7 +13,8 @@ class ModelWriter {
     /// Returns whether there was a voxel before.
     bool set(glm::ivec3 voxel, MaterialIndex material);
 
-    /// Fills a cube and returns how many voxels there were before. It stays whole where it covers whole cells of 8^3.
+    /// Fills a cube and returns how many voxels there were before. It stays whole where it covers whole cells
+    /// of 8^3.
     std::uint64_t fillCube(glm::ivec3 corner, int edge, MaterialIndex material);
 
     std::uint64_t memoryBytes() const;

@@ -58,7 +58,8 @@ std::string nameForeignContent(std::span<const std::byte> bytes) {
 
 /// The VOX importer merges by itself, in the frame of its world: here its asset has one instance already.
 Result<VoxelAsset> importMerged(const import::Importer& importer, const import::SourceBytes& source,
-                                const ImportSettings& settings, const Limits& limits, Diagnostics& diagnostics) {
+                                const ImportSettings& settings, const Limits& limits,
+                                Diagnostics& diagnostics) {
     PFVOX_TRY(VoxelAsset, asset, importer.import(source, settings, limits, diagnostics));
     if (settings.merge) PFVOX_CHECK(import::mergeAsset(asset, limits, diagnostics));
     import::checkAsset(asset, diagnostics);

@@ -1,4 +1,4 @@
-// BrickMask: one bit for each voxel of a brick, and what its six neighbours are.
+// BrickMask: one bit for each voxel of a brick, and what its six neighbors are.
 //
 // Bit m of the 512 belongs to the voxel with Morton code m, as in Brick::occupancy: word w is the 4^3 block
 // whose place in the brick has Morton code w. A step along an axis is a shift by a fixed distance for three
@@ -44,9 +44,9 @@ constexpr std::uint64_t stepDown(std::uint64_t block, std::uint64_t previous, un
            ((previous >> (9 * u)) & kEven[axis] & kLower[axis]);
 }
 
-/// For each voxel of a brick the bit of its neighbour in the direction of `face`; `beside` is the brick
+/// For each voxel of a brick the bit of its neighbor in the direction of `face`; `beside` is the brick
 /// there.
-constexpr BrickMask neighbourBits(const BrickMask& brick, const BrickMask& beside, unsigned face) {
+constexpr BrickMask neighborBits(const BrickMask& brick, const BrickMask& beside, unsigned face) {
     const unsigned axis = axisOf(face);
     const std::size_t half = std::size_t{1} << axis;
     BrickMask bits{};

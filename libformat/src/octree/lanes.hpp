@@ -1,5 +1,5 @@
-// Comparing the materials of eight sibling voxels at once, working on the masks of eight nodes at once, and counting bits
-// without a CPU that can.
+// Comparing the materials of eight sibling voxels at once, working on the masks of eight nodes at once, and
+// counting bits without a CPU that can.
 #pragma once
 
 #include <array>

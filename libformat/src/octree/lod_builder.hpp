@@ -1,4 +1,4 @@
-// LodBuilder: mean colour, coverage and dominant material of what can be seen of every node (NodeLod).
+// LodBuilder: mean color, coverage and dominant material of what can be seen of every node (NodeLod).
 //
 // Runs after the trees are built and does not touch them. Visible faces come from the masks of the voxel
 // model, across the borders of bricks and regions; materials come from the tree, where a leaf has one value

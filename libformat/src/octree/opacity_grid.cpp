@@ -54,10 +54,10 @@ OpacityGrid::OpacityGrid(const VoxelModel& model, const std::vector<Material>& m
                                   : &region.mixed.emplace_back(opaqueVoxels(*cell.brick, opaqueMaterials_));
         }
     });
-    findNeighbours(model);
+    findNeighbors(model);
 }
 
-void OpacityGrid::findNeighbours(const VoxelModel& model) {
+void OpacityGrid::findNeighbors(const VoxelModel& model) {
     const auto key = [](glm::ivec3 c) { return std::array{c.x, c.y, c.z}; };
     for (std::uint32_t r = 0; r < regions_.size(); ++r) indexOf_[key(model.regions()[r]->coord())] = r;
     for (std::uint32_t r = 0; r < regions_.size(); ++r) {

@@ -36,7 +36,7 @@ class OpacityGrid {
     const BrickMask& opaqueBeside(CellPlace place, unsigned face) const;
     /// The voxels of the cell, empty ones too, whose face in this direction is covered.
     BrickMask covered(CellPlace place, unsigned face) const {
-        return neighbourBits(opaque(place), opaqueBeside(place, face), face);
+        return neighborBits(opaque(place), opaqueBeside(place, face), face);
     }
 
   private:
@@ -48,7 +48,7 @@ class OpacityGrid {
         std::deque<BrickMask> mixed;          ///< of bricks with opaque and transparent voxels
         std::array<std::uint32_t, kFaces> beside{};
     };
-    void findNeighbours(const VoxelModel& model);
+    void findNeighbors(const VoxelModel& model);
 
     std::map<std::array<int, 3>, std::uint32_t> indexOf_;  ///< by region coordinate
     std::vector<bool> opaqueMaterials_;                    ///< by any 16-bit index

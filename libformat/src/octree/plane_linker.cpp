@@ -98,8 +98,8 @@ class EightOf {
     std::size_t next_ = 0;
 };
 
-/// For each mask of eight nodes and each of them: by how many bits the byte of that node lies up in the bytes of all nodes
-/// in the mask and then of all others.
+/// For each mask of eight nodes and each of them: by how many bits the byte of that node lies up in the bytes
+/// of all nodes in the mask and then of all others.
 constexpr std::array<std::array<std::uint8_t, 8>, 256> kPlaces = [] {
     std::array<std::array<std::uint8_t, 8>, 256> places{};
     for (unsigned mask = 0; mask < 256; ++mask) {
@@ -153,7 +153,8 @@ void writeSomeWords(std::uint64_t low, std::uint64_t high, std::uint32_t base, s
     std::copy_n(words.begin(), out.size(), out.begin());
 }
 
-/// Lookup words from masks, eight at a time; returns the number of values. The masks are padded with zeros to eight.
+/// Lookup words from masks, eight at a time; returns the number of values. The masks are padded with zeros to
+/// eight.
 std::uint64_t writeLookup(const std::uint8_t* masks, std::size_t size, std::uint32_t* out) {
     std::uint64_t values = 0;
     for (std::size_t i = 0; i < size; i += 8) {
@@ -187,8 +188,7 @@ Result<void> PlaneLinker::joinMasks(const NodePlanes& planes, std::uint32_t* nod
             spread(isBranch, branches.take(branchCount), tips.take(count - branchCount));
         const std::uint64_t uniform = spread(isBranch, hoisted.take(branchCount), 0);
         const std::uint64_t valid = leaf | inner;
-        isFaulty |= ((leaf & inner) | (uniform & ~inner)) != 0 ||
-                    kBitCount[nonZeroBytes(valid)] != count;
+        isFaulty |= ((leaf & inner) | (uniform & ~inner)) != 0 || kBitCount[nonZeroBytes(valid)] != count;
         const std::uint64_t values = leaf | uniform;
         std::memcpy(masks + i, &values, 8);
         writeSomeWords(leaf, valid, 0, {nodes + i, count});
@@ -211,8 +211,8 @@ bool PlaneLinker::coverBlock(std::uint64_t innerMasks, std::uint32_t first, std:
     return true;
 }
 
-/// Gives every branch its pointer and clears the masks below hoisted values. Nodes lie in depth-first order of sibling
-/// blocks, so the next block of children is always the first place not given out yet.
+/// Gives every branch its pointer and clears the masks below hoisted values. Nodes lie in depth-first order
+/// of sibling blocks, so the next block of children is always the first place not given out yet.
 Result<void> PlaneLinker::walk(std::span<const std::uint8_t> inner, NodeTree& tree) {
     struct Level {
         std::uint32_t first;     ///< node of the block
@@ -248,8 +248,7 @@ Result<void> PlaneLinker::walk(std::span<const std::uint8_t> inner, NodeTree& tr
         const std::uint64_t innerMasks =
             eightBytes(inner.data(), first, inner.size()) & kBytesOfBits[(1u << count) - 1];
         const bool isCovered = (block.covered >> k & 1u) != 0;
-        const std::uint32_t covered =
-            isCovered ? 0xffu : gather(masks_[index] & children, children);
+        const std::uint32_t covered = isCovered ? 0xffu : gather(masks_[index] & children, children);
         if (covered != 0 && !coverBlock(innerMasks, first, count, covered))
             return badNode(index, "a hoisted value lies below another");
         stack[++level] = {.first = first, .branches = nonZeroBytes(innerMasks), .covered = covered};

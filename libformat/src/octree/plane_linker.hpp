@@ -1,8 +1,8 @@
 // PlaneLinker: from the planes of masks (node_planes.hpp) back to child descriptors and lookup words.
 //
-// Three passes: over the planes, node by node, for the masks; over the nodes with inner children, depth first, for
-// pointers and for what lies below hoisted values; over the masks of values, eight nodes at once, for value pointers.
-// Each word of the result is in the cache when it is written a second time.
+// Three passes: over the planes, node by node, for the masks; over the nodes with inner children, depth
+// first, for pointers and for what lies below hoisted values; over the masks of values, eight nodes at once,
+// for value pointers. Each word of the result is in the cache when it is written a second time.
 #pragma once
 
 #include <cstdint>
@@ -35,7 +35,8 @@ class PlaneLinker {
 
     Result<void> joinMasks(const NodePlanes& planes, std::uint32_t* nodes);
     Result<void> walk(std::span<const std::uint8_t> inner, NodeTree& tree);
-    bool coverBlock(std::uint64_t innerMasks, std::uint32_t first, std::uint32_t count, std::uint32_t covered);
+    bool coverBlock(std::uint64_t innerMasks, std::uint32_t first, std::uint32_t count,
+                    std::uint32_t covered);
     Result<void> writeFarTable(NodeTree& tree);
 
     GrowBuffer<std::uint8_t> buffer_;

@@ -138,8 +138,7 @@ Slot RegionBuilder::buildRoot(const VoxelRegion& source) {
     return Slot::leaf(*source.uniform());
 }
 
-Result<OctreeRegion> RegionBuilder::build(const VoxelRegion& source, Extent extent,
-                                          std::size_t materialCount,
+Result<OctreeRegion> RegionBuilder::build(const VoxelRegion& source, Extent extent, std::size_t materialCount,
                                           const std::shared_ptr<MemoryPool>& pool) {
     writer_.clear();
     writer_.finish(buildRoot(source));

@@ -6,7 +6,7 @@ namespace pfvox::probe {
 
 namespace {
 
-/// The matrix couples neighbours only and its diagonal leads: some twenty steps reach the last digit that is
+/// The matrix couples neighbors only and its diagonal leads: some twenty steps reach the last digit that is
 /// stored.
 constexpr int kMaxSteps = 64;
 constexpr double kRelativeResidual = 1e-9;
@@ -20,12 +20,12 @@ double dot(const std::vector<double>& a, const std::vector<double>& b) {
 
 }  // namespace
 
-BilinearFit::BilinearFit(std::uint32_t interior, std::uint32_t sampleEdge)
+BilinearFit::BilinearFit(std::uint32_t interior, std::uint32_t sampleResolution)
     : texelCount_(std::size_t{interior} * interior) {
-    for (std::uint32_t y = 0; y < sampleEdge; ++y)
-        for (std::uint32_t x = 0; x < sampleEdge; ++x) {
-            footprints_.push_back(footprintOf(directionOf(x + 0.5, y + 0.5, sampleEdge), interior));
-            weights_.push_back(solidAngleOf(x, y, sampleEdge));
+    for (std::uint32_t y = 0; y < sampleResolution; ++y)
+        for (std::uint32_t x = 0; x < sampleResolution; ++x) {
+            footprints_.push_back(footprintOf(directionOf(x + 0.5, y + 0.5, sampleResolution), interior));
+            weights_.push_back(solidAngleOf(x, y, sampleResolution));
         }
 }
 

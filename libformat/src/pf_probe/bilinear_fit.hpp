@@ -10,11 +10,11 @@ namespace pfvox::probe {
 
 class BilinearFit {
   public:
-    /// `sampleEdge`: the values are given at the texels of an octahedral map of this edge.
-    BilinearFit(std::uint32_t interior, std::uint32_t sampleEdge);
+    /// `sampleResolution`: the values are given at the texels of an octahedral map of this edge.
+    BilinearFit(std::uint32_t interior, std::uint32_t sampleResolution);
 
     /// Weighted least squares over all texels >= 0: texels that come out negative are set to 0 and the rest
-    /// is fitted again, until none is. `values`: sampleEdge^2.
+    /// is fitted again, until none is. `values`: sampleResolution^2.
     std::vector<double> fitNonNegative(std::span<const double> values) const;
 
   private:

@@ -99,7 +99,8 @@ Result<void> Container::readTable() {
     std::memcpy(hashed.data(), &hashedHeader, sizeof hashedHeader);
     std::ranges::copy(table, hashed.begin() + sizeof hashedHeader);
     if (io::xxh3_64(hashed) != header_.headHash)
-        return failAt(ErrorCode::ChecksumMismatch, 0, "header", "header or section table is damaged: bake again");
+        return failAt(ErrorCode::ChecksumMismatch, 0, "header",
+                      "header or section table is damaged: bake again");
     return {};
 }
 

@@ -56,13 +56,13 @@ glm::dvec3 irradianceOver(const Flux& sums, glm::dvec3 normal) {
 std::vector<std::uint32_t> irradianceLayer(const RadianceMap& radiance, std::uint32_t interior) {
     PFVOX_ASSERT(radiance.texels.size() == std::size_t{radiance.edge} * radiance.edge);
     const Flux sums = sumFlux(radiance);
-    const std::uint32_t sampleEdge = kSamplesPerTexel * interior;
+    const std::uint32_t sampleResolution = kSamplesPerTexel * interior;
     std::array<std::vector<double>, 3> values;
-    for (const glm::dvec3 normal : probe::texelDirections(sampleEdge)) {
+    for (const glm::dvec3 normal : probe::texelDirections(sampleResolution)) {
         const glm::dvec3 e = irradianceOver(sums, normal);
         for (std::size_t c = 0; c < 3; ++c) values[c].push_back(e[static_cast<int>(c)]);
     }
-    const probe::BilinearFit fit(interior, sampleEdge);
+    const probe::BilinearFit fit(interior, sampleResolution);
     const std::array<std::vector<double>, 3> fitted{
         fit.fitNonNegative(values[0]), fit.fitNonNegative(values[1]), fit.fitNonNegative(values[2])};
     std::vector<std::uint32_t> words;

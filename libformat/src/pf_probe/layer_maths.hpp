@@ -16,7 +16,7 @@ double solidAngleOf(std::uint32_t x, std::uint32_t y, std::uint32_t edge);
 /// impossible without making them much fewer.
 std::uint32_t blockEdgeOf(std::uint32_t edge, std::uint32_t maxBlocks);
 
-/// Directions of the centres of edge * edge texels.
+/// Directions of the centers of edge * edge texels.
 std::vector<glm::dvec3> texelDirections(std::uint32_t edge);
 
 /// The four interior texels of a bilinear lookup and their weights; a texel may occur twice.

@@ -23,15 +23,15 @@ struct Info {
     std::array<std::uint32_t, 3> gridCounts;
     std::uint32_t rangeFirst;
     std::uint32_t rangeEnd;
-    std::uint32_t depthEdge;
-    std::uint32_t lightEdge;
-    std::uint32_t irradianceEdge;
-    std::uint32_t momentsEdge;
+    std::uint32_t depthResolution;
+    std::uint32_t lightResolution;
+    std::uint32_t irradianceResolution;
+    std::uint32_t momentsResolution;
     float depthScale;
     float depthFarMetres;
     std::uint32_t lightContent;
     std::uint64_t seed;
-    std::uint32_t tracedEdge;
+    std::uint32_t tracedResolution;
     std::uint32_t minSamples;
     std::uint32_t maxSamples;
     std::uint32_t maxBounces;
@@ -63,7 +63,7 @@ struct Record {
     std::uint16_t flags;
     std::uint64_t hash;
     float error;
-    float cappedTileShare;
+    float noisyTileFraction;
 };
 static_assert(sizeof(Record) == 32 && offsetof(Record, hash) == 16);
 
@@ -99,10 +99,10 @@ struct JournalHeader {
     std::array<std::uint32_t, 3> gridCounts;
     std::uint32_t rangeFirst;
     std::uint32_t rangeEnd;
-    std::uint32_t depthEdge;
-    std::uint32_t lightEdge;
-    std::uint32_t irradianceEdge;
-    std::uint32_t momentsEdge;
+    std::uint32_t depthResolution;
+    std::uint32_t lightResolution;
+    std::uint32_t irradianceResolution;
+    std::uint32_t momentsResolution;
     float depthScale;
     float depthFarMetres;
     std::uint32_t lightContent;

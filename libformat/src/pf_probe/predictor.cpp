@@ -39,7 +39,7 @@ std::span<const Field> fieldsOf(ProbeLayer layer) {
     return kLightFields;
 }
 
-/// What neighbours foretell, row by row: only the values of the row above and of the left neighbour are kept.
+/// What neighbors foretell, row by row: only the values of the row above and of the left neighbor are kept.
 class Foreteller {
   public:
     Foreteller(const Field& field, std::uint32_t edge) : rule_(field.rule), above_(edge, 0) {}

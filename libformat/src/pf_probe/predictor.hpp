@@ -1,4 +1,4 @@
-// Predictor: the words of a map as differences to what their neighbours foretell, which are small numbers
+// Predictor: the words of a map as differences to what their neighbors foretell, which are small numbers
 // where surfaces are flat and light is smooth; sorted into planes of bytes for zstd. Lossless, integers only.
 //
 // A word has fields (shaders/shared/probe_maths.glsl.h). For each field, with arithmetic modulo 2^bits:

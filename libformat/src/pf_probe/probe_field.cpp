@@ -169,8 +169,8 @@ Result<void> checkProbeInfo(const ProbeFieldInfo& info) {
     }
     const ProbeResolution& r = info.resolution;
     if (r.bytesPerProbe() == 0) return bad("a probe has no layers");
-    if (std::max({r.depth, r.light, r.irradiance, r.moments}) > kMaxProbeEdge)
-        return bad(fmt::format("a map has more than {} texels along an edge", kMaxProbeEdge));
+    if (std::max({r.depth, r.light, r.irradiance, r.moments}) > kMaxProbeResolution)
+        return bad(fmt::format("a map has more than {} texels along an edge", kMaxProbeResolution));
     if (r.depth % shared::kMinDepthBlock != 0)
         return bad(fmt::format("depth maps of {} texels along an edge: needs a multiple of {}", r.depth,
                                shared::kMinDepthBlock));

@@ -42,7 +42,9 @@ std::string valueText(const ProbeSetting& setting, const std::optional<T>& value
     return value ? valueText(setting, *value) : fmt::format("{} unknown", setting.option);
 }
 
-std::uint64_t bitsOf(float value) { return std::bit_cast<std::uint32_t>(value); }
+std::uint64_t bitsOf(float value) {
+    return std::bit_cast<std::uint32_t>(value);
+}
 template <class T>
 std::uint64_t bitsOf(T value) {
     return value;
@@ -66,7 +68,8 @@ std::optional<T> fromBits(std::uint64_t bits) {
 
 }  // namespace
 
-std::vector<ProbeSettingDifference> differencesOf(const ProbeBakeSettings& first, const ProbeBakeSettings& second) {
+std::vector<ProbeSettingDifference> differencesOf(const ProbeBakeSettings& first,
+                                                  const ProbeBakeSettings& second) {
     std::vector<ProbeSettingDifference> differences;
     const auto compare = [&](const ProbeSetting& setting, const auto& a, const auto& b) {
         if (a != b) differences.push_back({valueText(setting, a), valueText(setting, b)});
@@ -101,7 +104,9 @@ Result<void> readSettingEntries(std::span<const probe_layout::Setting> entries, 
     Result<void> result;
     std::uint32_t last = 0;
     for (const probe_layout::Setting& entry : entries) {
-        if (entry.id <= last) return fail(ErrorCode::BadStructure, fmt::format("setting {} is not in ascending order", entry.id));
+        if (entry.id <= last)
+            return fail(ErrorCode::BadStructure,
+                        fmt::format("setting {} is not in ascending order", entry.id));
         if (entry.reserved != 0) return fail(ErrorCode::BadValue, "a reserved field is not 0");
         last = entry.id;
         const auto take = [&](const ProbeSetting& setting, auto& value) {
@@ -109,7 +114,9 @@ Result<void> readSettingEntries(std::span<const probe_layout::Setting> entries, 
             if constexpr (!std::is_arithmetic_v<Value>) {
                 if (setting.id != entry.id) return;
                 value = fromBits<typename ValueOf<Value>::Type>(entry.value);
-                if (!value) result = fail(ErrorCode::BadValue, fmt::format("0x{:x} is not a value of {}", entry.value, setting.name));
+                if (!value)
+                    result = fail(ErrorCode::BadValue,
+                                  fmt::format("0x{:x} is not a value of {}", entry.value, setting.name));
             }
         };
         forEachProbeSetting(take, settings);

@@ -13,7 +13,8 @@ namespace pfvox::probe {
 /// Known settings with an id, ascending. Empty = nothing to write.
 std::vector<probe_layout::Setting> settingEntries(const ProbeBakeSettings& settings);
 
-/// Into settings whose optional ones are unknown. Ids of later versions are left out. Errors: BadValue, BadStructure.
+/// Into settings whose optional ones are unknown. Ids of later versions are left out. Errors: BadValue,
+/// BadStructure.
 Result<void> readSettingEntries(std::span<const probe_layout::Setting> entries, ProbeBakeSettings& settings);
 
 /// What INFO says of the limit of bounces: 0 = no limit, or nothing known.

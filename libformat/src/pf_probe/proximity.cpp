@@ -110,11 +110,11 @@ class ProximityBuilder {
         cellsOfProbe_.resize(input_.records.size());
         const ProbeGrid& grid = input_.info.grid;
         for (std::size_t slot = 0; slot < input_.surfaces.cells.size(); ++slot) {
-            const glm::vec3 centre =
+            const glm::vec3 center =
                 cornerOf(input_.shape, input_.surfaces.cells[slot], 0) + 0.5f * input_.shape.step;
             // A relocated probe is less than a step away from its grid point.
-            const glm::vec3 low = glm::floor((centre - radius_ - grid.start) / grid.step) - 1.0f;
-            const glm::vec3 high = glm::ceil((centre + radius_ - grid.start) / grid.step) + 1.0f;
+            const glm::vec3 low = glm::floor((center - radius_ - grid.start) / grid.step) - 1.0f;
+            const glm::vec3 high = glm::ceil((center + radius_ - grid.start) / grid.step) + 1.0f;
             const glm::vec3 last{grid.counts - 1u};
             if (glm::any(glm::lessThan(high, glm::vec3{0})) || glm::any(glm::greaterThan(low, last)))
                 continue;
@@ -125,7 +125,7 @@ class ProximityBuilder {
                     for (std::uint32_t x = from.x; x <= to.x; ++x) {
                         const std::uint32_t probe = grid.indexOf({x, y, z});
                         if (!input_.records[probe].isActive()) continue;
-                        if (glm::distance(positionOf(probe), centre) > radius_) continue;
+                        if (glm::distance(positionOf(probe), center) > radius_) continue;
                         cellsOfProbe_[probe].push_back(slot);
                         ++report_.pairsTested;
                     }
@@ -183,7 +183,8 @@ class ProximityBuilder {
                 byCell_[view.slot].push_back({static_cast<std::uint32_t>(probe), view.seen, view.texels});
     }
 
-    /// Samples that no other sees yet count, each by how fine a picture this probe has: by the width of its texels there.
+    /// Samples that no other sees yet count, each by how fine a picture this probe has: by the width of its
+    /// texels there.
     static float gainOf(const Candidate& candidate, std::uint64_t covered) {
         return static_cast<float>(std::popcount(candidate.seen & ~covered)) * std::sqrt(candidate.texels);
     }

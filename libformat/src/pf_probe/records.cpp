@@ -98,10 +98,10 @@ Result<void> checkRecord(const ProbeRecord& record) {
     if (record.state != ProbeState::Relocated && record.offset != glm::vec3{0.0f})
         return bad("has an offset and is not relocated");
     if (record.flags != 0) return bad("unknown flags");
-    const auto isShare = [](float v) { return v >= 0 && std::isfinite(v); };
-    if (!isShare(record.error.value_or(0.0f)) || !isShare(record.cappedTileShare) ||
-        record.cappedTileShare > 1)
-        return bad("error or share of capped tiles are no numbers from 0 up");
+    const auto isFraction = [](float v) { return v >= 0 && std::isfinite(v); };
+    if (!isFraction(record.error.value_or(0.0f)) || !isFraction(record.noisyTileFraction) ||
+        record.noisyTileFraction > 1)
+        return bad("error or fraction of noisy tiles are no numbers from 0 up");
     return {};
 }
 
@@ -111,15 +111,15 @@ std::vector<std::byte> infoBytes(const ProbeFieldInfo& info) {
                                    .gridCounts = toArray(info.grid.counts),
                                    .rangeFirst = info.range.first,
                                    .rangeEnd = info.range.end,
-                                   .depthEdge = info.resolution.depth,
-                                   .lightEdge = info.resolution.light,
-                                   .irradianceEdge = info.resolution.irradiance,
-                                   .momentsEdge = info.resolution.moments,
+                                   .depthResolution = info.resolution.depth,
+                                   .lightResolution = info.resolution.light,
+                                   .irradianceResolution = info.resolution.irradiance,
+                                   .momentsResolution = info.resolution.moments,
                                    .depthScale = info.depth.scale,
                                    .depthFarMetres = info.depth.farMetres,
                                    .lightContent = info.lightContent,
                                    .seed = info.settings.seed,
-                                   .tracedEdge = info.settings.tracedEdge,
+                                   .tracedResolution = info.settings.tracedResolution,
                                    .minSamples = info.settings.minSamples,
                                    .maxSamples = info.settings.maxSamples,
                                    .maxBounces = bouncesOfInfo(info.settings),
@@ -145,27 +145,27 @@ Result<ProbeFieldInfo> readInfo(std::span<const std::byte> bytes) {
     if (!tool || cursor.remaining() != 0)
         return fail(ErrorCode::BadStructure, "the names do not have the announced lengths");
     if (fixed->reserved != 0) return fail(ErrorCode::BadValue, "a reserved field is not 0");
-    ProbeFieldInfo info{
-        .grid = {toVec(fixed->gridStart), toVec(fixed->gridStep), toVec(fixed->gridCounts)},
-        .range = {fixed->rangeFirst, fixed->rangeEnd},
-        .resolution = {fixed->depthEdge, fixed->lightEdge, fixed->irradianceEdge, fixed->momentsEdge},
-        .depth = {fixed->depthScale, fixed->depthFarMetres},
-        .lightContent = fixed->lightContent,
-        .settings = {.seed = fixed->seed,
-                     .tracedEdge = fixed->tracedEdge,
-                     .minSamples = fixed->minSamples,
-                     .maxSamples = fixed->maxSamples,
-                     .maxBounces = bouncesFromInfo(fixed->maxBounces),
-                     .noiseTarget = fixed->noiseTarget,
-                     .noiseFloor = {},
-                     .sampling = {},
-                     .stratified = {},
-                     .relocate = {},
-                     .filter = {}},
-        .sceneHash = {fixed->sceneHash},
-        .shaderHash = {fixed->shaderHash},
-        .deviceName = toText(*device),
-        .toolName = toText(*tool)};
+    ProbeFieldInfo info{.grid = {toVec(fixed->gridStart), toVec(fixed->gridStep), toVec(fixed->gridCounts)},
+                        .range = {fixed->rangeFirst, fixed->rangeEnd},
+                        .resolution = {fixed->depthResolution, fixed->lightResolution,
+                                       fixed->irradianceResolution, fixed->momentsResolution},
+                        .depth = {fixed->depthScale, fixed->depthFarMetres},
+                        .lightContent = fixed->lightContent,
+                        .settings = {.seed = fixed->seed,
+                                     .tracedResolution = fixed->tracedResolution,
+                                     .minSamples = fixed->minSamples,
+                                     .maxSamples = fixed->maxSamples,
+                                     .maxBounces = bouncesFromInfo(fixed->maxBounces),
+                                     .noiseTarget = fixed->noiseTarget,
+                                     .noiseFloor = {},
+                                     .sampling = {},
+                                     .stratified = {},
+                                     .relocate = {},
+                                     .filter = {}},
+                        .sceneHash = {fixed->sceneHash},
+                        .shaderHash = {fixed->shaderHash},
+                        .deviceName = toText(*device),
+                        .toolName = toText(*tool)};
     PFVOX_CHECK(checkProbeInfo(info));
     return info;
 }
@@ -179,7 +179,7 @@ probe_layout::Record toRecord(const ProbeRecord& record) {
             .flags = record.flags,
             .hash = record.hash,
             .error = record.isActive() ? record.error.value_or(probe_layout::kUnknownError) + 0.0f : 0.0f,
-            .cappedTileShare = record.cappedTileShare + 0.0f};
+            .noisyTileFraction = record.noisyTileFraction + 0.0f};
 }
 
 Result<ProbeRecord> fromRecord(const probe_layout::Record& record) {
@@ -187,7 +187,7 @@ Result<ProbeRecord> fromRecord(const probe_layout::Record& record) {
                        .state = static_cast<ProbeState>(record.state),
                        .flags = record.flags,
                        .error = {},
-                       .cappedTileShare = record.cappedTileShare,
+                       .noisyTileFraction = record.noisyTileFraction,
                        .hash = record.hash};
     if (record.reserved != 0) return fail(ErrorCode::BadValue, "a reserved field is not 0");
     // Checked even where it is not taken: an inactive probe has no error.

@@ -8,7 +8,7 @@ namespace pfvox {
 
 namespace {
 
-/// The base colours of a palette, in the bytes of NodeLod::colors; no coverage.
+/// The base colors of a palette, in the bytes of NodeLod::colors; no coverage.
 std::vector<std::uint32_t> paletteColors(const OctreeRegion& region, const std::vector<Material>& materials) {
     std::vector<std::uint32_t> colors;
     colors.reserve(region.palette.size());

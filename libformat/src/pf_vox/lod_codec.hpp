@@ -1,9 +1,9 @@
 // LodCodec: NodeLod as bytes.
 //
 // Packed (LODA): planes, one behind the other, of n nodes: red, green, blue, coverage, low byte of the
-// palette index and, where the palette has more than 256 entries, its high byte. The colour is the difference
-// (mod 256) to the base colour of the node's material: 0 where only one material is visible, which is most of
-// the time. Resident (LODR): as a GPU reads it: n words of colour, then n 16-bit palette indices.
+// palette index and, where the palette has more than 256 entries, its high byte. The color is the difference
+// (mod 256) to the base color of the node's material: 0 where only one material is visible, which is most of
+// the time. Resident (LODR): as a GPU reads it: n words of color, then n 16-bit palette indices.
 #pragma once
 
 #include <cstdint>

@@ -50,8 +50,8 @@ Result<std::size_t> RegionReader::poolBytes(std::size_t id, const layout::Region
         // The far table follows from the masks and has at most an entry for each node with inner children.
         if (record.farCount > record.branchCount)
             return fail(ErrorCode::BadStructure, "more far pointers than nodes with inner children");
-        PFVOX_CHECK(checkSize(RegionPart::Masks, id,
-                              octree::planeBytes(record.nodeCount, record.branchCount, true)));
+        PFVOX_CHECK(
+            checkSize(RegionPart::Masks, id, octree::planeBytes(record.nodeCount, record.branchCount, true)));
     } else {
         PFVOX_CHECK(checkSize(RegionPart::Nodes, id, words));
         PFVOX_CHECK(checkSize(RegionPart::Lookup, id, words));
@@ -60,8 +60,8 @@ Result<std::size_t> RegionReader::poolBytes(std::size_t id, const layout::Region
     return 2 * MemoryPool::rounded(words) + MemoryPool::rounded(farBytes) + MemoryPool::rounded(values);
 }
 
-Result<void> RegionReader::readPackedTree(std::size_t id, const layout::Region& record,
-                                          OctreeRegion& region, Scratch& scratch) const {
+Result<void> RegionReader::readPackedTree(std::size_t id, const layout::Region& record, OctreeRegion& region,
+                                          Scratch& scratch) const {
     PFVOX_TRY(const layout::Section*, section, require(RegionPart::Masks, id));
     const std::size_t n = record.nodeCount;
     const std::uint64_t bytes = octree::planeBytes(n, record.branchCount, true);
@@ -135,7 +135,8 @@ Result<OctreeRegion> RegionReader::read(std::size_t id, const layout::Region& re
     region.tree.depth = record.depth;
     const auto palette = palettes.subspan(record.paletteFirst, record.paletteCount);
     region.palette.assign(palette.begin(), palette.end());
-    PFVOX_CHECK(isPacked() ? readPackedTree(id, record, region, scratch) : readResidentTree(id, record, region));
+    PFVOX_CHECK(isPacked() ? readPackedTree(id, record, region, scratch)
+                           : readResidentTree(id, record, region));
     PFVOX_CHECK(readValues(id, record, region));
     PFVOX_CHECK(readLod(id, region));
     region.voxelCount = record.voxelCount;

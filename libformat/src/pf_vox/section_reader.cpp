@@ -42,9 +42,11 @@ Result<layout::Header> readHeader(std::span<const std::byte> file) {
                       fmt::format("needs unknown features 0x{:x}: a newer pfvox made this file", unknown));
     }
     if (header.fileBytes > file.size()) {
-        return failAt(ErrorCode::Truncated, file.size(), "header",
-                      fmt::format("the file should have {} bytes and has {}: copy it again, or convert the source again",
-                                  header.fileBytes, file.size()));
+        return failAt(
+            ErrorCode::Truncated, file.size(), "header",
+            fmt::format(
+                "the file should have {} bytes and has {}: copy it again, or convert the source again",
+                header.fileBytes, file.size()));
     }
     if (header.fileBytes < file.size()) {
         return failAt(ErrorCode::BadStructure, header.fileBytes, "header",
@@ -111,7 +113,8 @@ Result<FileHead> readHead(std::span<const std::byte> file) {
                                   file.begin() + static_cast<std::ptrdiff_t>(sizeof header + tableBytes));
     std::memset(hashed.data() + offsetof(layout::Header, headHash), 0, sizeof header.headHash);
     if (io::xxh3_64(hashed) != header.headHash) {
-        return failAt(ErrorCode::ChecksumMismatch, 0, "header", "header or section table is damaged: convert the source again");
+        return failAt(ErrorCode::ChecksumMismatch, 0, "header",
+                      "header or section table is damaged: convert the source again");
     }
     head.sections.resize(header.sectionCount);
     if (tableBytes != 0) std::memcpy(head.sections.data(), file.data() + sizeof header, tableBytes);

@@ -44,14 +44,16 @@ std::string remedyFor(const fs::path& file) {
         return fmt::format("convert the source first: vox2pf convert {} -o {}", shellWord(file),
                            shellWord(fs::path(file).replace_extension(".pf_vox")));
     }
-    return fmt::format("convert its source anew: vox2pf convert <source> -o {0}; a .pf_vox file of the program's "
-                       "predecessor is a source, too: vox2pf convert {0} -o 'converted/'",
-                       shellWord(file));
+    return fmt::format(
+        "convert its source anew: vox2pf convert <source> -o {0}; a .pf_vox file of the program's "
+        "predecessor is a source, too: vox2pf convert {0} -o 'converted/'",
+        shellWord(file));
 }
 
 /// Bytes were lost or changed on their way.
 bool isDamage(ErrorCode code) {
-    return code == ErrorCode::Truncated || code == ErrorCode::ChecksumMismatch || code == ErrorCode::BadStructure;
+    return code == ErrorCode::Truncated || code == ErrorCode::ChecksumMismatch ||
+           code == ErrorCode::BadStructure;
 }
 
 Result<std::shared_ptr<const OctreeAsset>> loadAsset(const fs::path& file, const Limits& limits,

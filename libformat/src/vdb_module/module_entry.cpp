@@ -24,13 +24,13 @@ Result<VoxelAsset> importVdb(const import::SourceBytes& source, const ImportSett
     return import::vdb::importVdb(source, settings, limits, forwarded);
 }
 
-Result<std::vector<std::byte>> exportAsset(const OctreeAsset& asset, const Limits& limits, ReportTo diagnostics) {
+Result<std::vector<std::byte>> exportAsset(const OctreeAsset& asset, const Limits& limits,
+                                           ReportTo diagnostics) {
     ForwardedDiagnostics forwarded(diagnostics);
     return vdb_export::exportVdb(asset, limits, forwarded);
 }
 
-constexpr VdbModule kModule{
-    .buildId = PFVOX_MODULE_ID, .import = importVdb, .exportAsset = exportAsset};
+constexpr VdbModule kModule{.buildId = PFVOX_MODULE_ID, .import = importVdb, .exportAsset = exportAsset};
 
 }  // namespace
 

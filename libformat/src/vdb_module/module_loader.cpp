@@ -67,8 +67,8 @@ Result<void> checkRoom() {
 
 Result<const VdbModule*> open(const fs::path& file) {
     PFVOX_CHECK(checkRoom());
-    // Now, not when a function is first called: a missing symbol would end the program there. The handle stays open:
-    // OpenVDB registers itself with libraries that outlive it.
+    // Now, not when a function is first called: a missing symbol would end the program there. The handle
+    // stays open: OpenVDB registers itself with libraries that outlive it.
     void* const handle = ::dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
     if (handle == nullptr) return loaderError();
     const auto entry = reinterpret_cast<VdbModuleEntry>(::dlsym(handle, kVdbModuleEntry));
@@ -107,8 +107,9 @@ Result<const VdbModule*> openVdbModule(std::span<const fs::path> folders) {
         if (fs::exists(file, ignored)) return open(file);
         places += fmt::format("{}{}", places.empty() ? "" : ", ", folder.string());
     }
-    return unavailable(fmt::format("the module {} is in none of {}: install it with pfvox or put it beside the program",
-                                   kFileName, places));
+    return unavailable(
+        fmt::format("the module {} is in none of {}: install it with pfvox or put it beside the program",
+                    kFileName, places));
 }
 
 Result<const VdbModule*> vdbModule() {

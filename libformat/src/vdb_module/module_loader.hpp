@@ -18,8 +18,8 @@ Result<const VdbModule*> vdbModule();
 /// The same in given folders, in their order; the first that has the file decides.
 Result<const VdbModule*> openVdbModule(std::span<const std::filesystem::path> folders);
 
-/// Where vdbModule() looks: below the library folder of the program's own tree, beside the program, and where pfvox was
-/// meant to be installed.
+/// Where vdbModule() looks: below the library folder of the program's own tree, beside the program, and where
+/// pfvox was meant to be installed.
 std::vector<std::filesystem::path> moduleFolders();
 
 /// A Diagnostics as the module takes it.

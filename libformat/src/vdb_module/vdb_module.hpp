@@ -2,9 +2,9 @@
 //
 //     pfvox::import -> [vdbModule(): dlopen on first use] -> VdbModule (a table of functions) -> OpenVDB
 //
-// A new function is a new field here and a new line in module_entry.cpp. Both sides must come from one build, which
-// buildId decides, so the table needs no version of its own. What crosses has no virtual functions: each side has its
-// own copy of what describes a class, and checks of the other's objects would fail.
+// A new function is a new field here and a new line in module_entry.cpp. Both sides must come from one build,
+// which buildId decides, so the table needs no version of its own. What crosses has no virtual functions:
+// each side has its own copy of what describes a class, and checks of the other's objects would fail.
 #pragma once
 
 #include <pfvox/error.hpp>

@@ -89,7 +89,8 @@ TEST(CameraController, MovesBySpeedAndTime) {
     controller.move({0, 0, -1}, 0.5, true);
     EXPECT_NEAR(controller.camera().position.z, 17.0, 1e-9) << "five times as fast";
     controller.move({1, 0, 1}, 1.0, false);
-    EXPECT_NEAR(glm::length(controller.camera().position - glm::dvec3(3, 2, 17)), 4.0, 1e-9) << "no faster diagonally";
+    EXPECT_NEAR(glm::length(controller.camera().position - glm::dvec3(3, 2, 17)), 4.0, 1e-9)
+        << "no faster diagonally";
     const viewer::ViewCamera still = controller.camera();
     controller.move({0, 0, 0}, 1.0, true);
     EXPECT_EQ(controller.camera(), still);

@@ -6,9 +6,9 @@
 namespace pfvox::test {
 namespace {
 
+using ::testing::HasSubstr;
 using viewer::CameraPath;
 using viewer::ViewCamera;
-using ::testing::HasSubstr;
 
 constexpr const char* kThree =
     R"({"cameras": [{"position": [0, 0, 9], "target": [0, 0, 0]},
@@ -38,7 +38,8 @@ TEST(CameraPath, HasNoCorners) {
 }
 
 TEST(CameraPath, OneCameraStandsStill) {
-    const CameraPath path = CameraPath::parse(R"({"cameras": [{"position": [1, 2, 3], "target": [0, 0, 0]}]})").value();
+    const CameraPath path =
+        CameraPath::parse(R"({"cameras": [{"position": [1, 2, 3], "target": [0, 0, 0]}]})").value();
     EXPECT_EQ(path.at(0.7), path.at(0.0));
 }
 
@@ -51,9 +52,12 @@ TEST(CameraPath, ErrorsNameTheCamera) {
     EXPECT_THAT(message("[]"), HasSubstr("no list 'cameras'"));
     EXPECT_THAT(message(R"({"cameras": []})"), HasSubstr("no list 'cameras'"));
     EXPECT_THAT(message(R"({"cameras": [7]})"), HasSubstr("camera 1: is no object"));
-    EXPECT_THAT(message(R"({"cameras": [{"position": [1, 2], "target": [0, 0, 0]}]})"), HasSubstr("camera 1: position"));
-    EXPECT_THAT(message(R"({"cameras": [{"position": [1, 2, 1e999], "target": [0, 0, 0]}]})"), ::testing::Ne("none"));
-    EXPECT_THAT(message(R"({"cameras": [{"position": [1, 2, 3], "target": [1, 2, 3]}]})"), HasSubstr("the same"));
+    EXPECT_THAT(message(R"({"cameras": [{"position": [1, 2], "target": [0, 0, 0]}]})"),
+                HasSubstr("camera 1: position"));
+    EXPECT_THAT(message(R"({"cameras": [{"position": [1, 2, 1e999], "target": [0, 0, 0]}]})"),
+                ::testing::Ne("none"));
+    EXPECT_THAT(message(R"({"cameras": [{"position": [1, 2, 3], "target": [1, 2, 3]}]})"),
+                HasSubstr("the same"));
     EXPECT_THAT(message(R"({"cameras": [{"position": [1, 2, 3], "target": [0, 0, 0], "fovYDegrees": 171}]})"),
                 HasSubstr("1 to 170"));
 }

@@ -5,8 +5,8 @@
 #include <numbers>
 
 #include "compose/gizmo.hpp"
-#include "compose/model_edits.hpp"
 #include "compose/model_drag.hpp"
+#include "compose/model_edits.hpp"
 #include "pick.hpp"
 #include "support/procedural.hpp"
 
@@ -83,20 +83,26 @@ TEST(Gizmo, ADragAlongAnAxisFollowsTheCursor) {
     const glm::dvec3 origin(0.5, -1.0, 0.25);
     const Gizmo gizmo(projection, origin);
     const auto at = [&](const glm::dvec3& p) { return *projection.pointOf(p); };
-    EXPECT_LT(distance(gizmo.moved(Handle::X, at(origin), at(origin + glm::dvec3(1.5, 0, 0))), {1.5, 0, 0}), 1e-9);
-    EXPECT_LT(distance(gizmo.moved(Handle::Y, at(origin), at(origin + glm::dvec3(0, -0.7, 0))), {0, -0.7, 0}), 1e-9);
-    EXPECT_LT(distance(gizmo.moved(Handle::Z, at(origin), at(origin + glm::dvec3(0, 0, 2))), {0, 0, 2}), 1e-9);
-    EXPECT_LT(distance(gizmo.moved(Handle::Ground, at(origin), at(origin + glm::dvec3(1, 0, 2))), {1, 0, 2}), 1e-9);
+    EXPECT_LT(distance(gizmo.moved(Handle::X, at(origin), at(origin + glm::dvec3(1.5, 0, 0))), {1.5, 0, 0}),
+              1e-9);
+    EXPECT_LT(distance(gizmo.moved(Handle::Y, at(origin), at(origin + glm::dvec3(0, -0.7, 0))), {0, -0.7, 0}),
+              1e-9);
+    EXPECT_LT(distance(gizmo.moved(Handle::Z, at(origin), at(origin + glm::dvec3(0, 0, 2))), {0, 0, 2}),
+              1e-9);
+    EXPECT_LT(distance(gizmo.moved(Handle::Ground, at(origin), at(origin + glm::dvec3(1, 0, 2))), {1, 0, 2}),
+              1e-9);
     EXPECT_EQ(gizmo.moved(Handle::Ground, at(origin), {400, -5000}), glm::dvec3(0)) << "above the horizon";
     EXPECT_NEAR(gizmo.turned(at(gizmo.circleAt(0.2)), at(gizmo.circleAt(1.0))), 0.8, 1e-9);
-    EXPECT_NEAR(gizmo.turned(at(gizmo.circleAt(3.0)), at(gizmo.circleAt(-3.0))), 2 * std::numbers::pi - 6.0, 1e-9);
+    EXPECT_NEAR(gizmo.turned(at(gizmo.circleAt(3.0)), at(gizmo.circleAt(-3.0))), 2 * std::numbers::pi - 6.0,
+                1e-9);
 }
 
 TEST(Gizmo, AnAxisSeenEndOnIsNotDragged) {
     const Projection projection({.position = {0, 0, 5}, .target = {0, 0, 0}}, kWindow);
     const Gizmo gizmo(projection, {0, 0, 0});
     EXPECT_EQ(gizmo.moved(Handle::Z, {400, 300}, {401, 300}), glm::dvec3(0));
-    EXPECT_EQ(gizmo.moved(Handle::Ground, {400, 300}, {401, 301}), glm::dvec3(0)) << "the ground seen edge-on";
+    EXPECT_EQ(gizmo.moved(Handle::Ground, {400, 300}, {401, 301}), glm::dvec3(0))
+        << "the ground seen edge-on";
 }
 
 /// Where the model takes a point of its file.
@@ -104,7 +110,7 @@ glm::dvec3 placed(const SceneModel& model, const OctreeAsset& asset, const glm::
     return worldFromAsset(model, asset) * glm::dvec4(point, 1.0);
 }
 
-TEST(ModelEdits, TurningKeepsTheCentreAndTurnsAllElse) {
+TEST(ModelEdits, TurningKeepsTheCenterAndTurnsAllElse) {
     const OctreeAsset asset = build(demoRoom());
     Random random(5);
     for (int i = 0; i < 200; ++i) {
@@ -112,14 +118,14 @@ TEST(ModelEdits, TurningKeepsTheCentreAndTurnsAllElse) {
         model.rotateRadians = {random.uniform(-3, 3), random.uniform(-3, 3), random.uniform(-3, 3)};
         if (i % 4 == 0) model.rotateRadians.y = 0.5 * std::numbers::pi;
         if (i % 2 == 0) model.metresPerVoxel = 0.37;
-        const glm::dvec3 centre(1.0, 2.0, 3.0);
+        const glm::dvec3 center(1.0, 2.0, 3.0);
         const double angle = random.uniform(-7, 7);
-        const SceneModel turned = turnedAbout(model, centre, angle);
+        const SceneModel turned = turnedAbout(model, center, angle);
         for (const glm::dvec3 point : {glm::dvec3(0), glm::dvec3(1, 2, 3), glm::dvec3(6, 0, 2)}) {
-            const glm::dvec3 before = placed(model, asset, point) - centre;
+            const glm::dvec3 before = placed(model, asset, point) - center;
             const glm::dvec3 expected(std::cos(angle) * before.x + std::sin(angle) * before.z, before.y,
                                       -std::sin(angle) * before.x + std::cos(angle) * before.z);
-            EXPECT_LT(distance(placed(turned, asset, point) - centre, expected), 1e-8) << i;
+            EXPECT_LT(distance(placed(turned, asset, point) - center, expected), 1e-8) << i;
         }
     }
 }
@@ -141,7 +147,7 @@ TEST(ModelEdits, ResizingKeepsTheFoot) {
     for (const bool byCube : {false, true}) {
         if (byCube) model.cubeEdgeMetres = glm::dvec3(8, 4, 2);
         const glm::dvec3 foot = footOf(boundsOf(asset, worldFromAsset(model, asset)));
-        const SceneModel larger = resized(model, {.factor = 1.5, .centre = foot, .voxelMetres = voxel});
+        const SceneModel larger = resized(model, {.factor = 1.5, .center = foot, .voxelMetres = voxel});
         const WorldBounds before = boundsOf(asset, worldFromAsset(model, asset));
         const WorldBounds after = boundsOf(asset, worldFromAsset(larger, asset));
         EXPECT_LT(distance(footOf(after), foot), 1e-9);

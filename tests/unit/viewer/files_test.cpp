@@ -58,9 +58,9 @@ TEST(OpenPath, FolderGivesItsScenesFirst) {
     std::vector<std::string> names;
     for (const auto& file : open->siblings) names.push_back(file.filename().string());
     EXPECT_THAT(names, ElementsAre("z.toml", "a.pf_vox", "b.pf_vox"));
-    EXPECT_EQ(neighbourOf(*open, 1).filename(), "a.pf_vox");
-    EXPECT_EQ(neighbourOf(*open, -1).filename(), "b.pf_vox");
-    EXPECT_EQ(neighbourOf(*open, 3).filename(), "z.toml");
+    EXPECT_EQ(neighborOf(*open, 1).filename(), "a.pf_vox");
+    EXPECT_EQ(neighborOf(*open, -1).filename(), "b.pf_vox");
+    EXPECT_EQ(neighborOf(*open, 3).filename(), "z.toml");
 }
 
 TEST(OpenPath, ABrokenSceneIsStillTheScene) {

@@ -22,7 +22,8 @@ using ::testing::ElementsAre;
 ProbeField knownField(const TempFolder& folder) {
     ProbeField field{.info = probeInfo(), .probes = {}, .proximity = {}};
     const DepthCoder coder(field.info.depth);
-    for (std::uint32_t i = 0; i < field.info.grid.probeCount(); ++i) field.probes.push_back(probeOf(field.info, i));
+    for (std::uint32_t i = 0; i < field.info.grid.probeCount(); ++i)
+        field.probes.push_back(probeOf(field.info, i));
     ProbeData& probe = field.probes[0];
     std::ranges::fill(probe.light, packLight({0.5f, 1.0f, 2.0f}));
     const std::uint32_t edge = field.info.resolution.depth;
@@ -48,7 +49,7 @@ TEST(ProbeDetail, FiguresAndMapsOfAKnownProbe) {
     EXPECT_EQ(detail->maxLight, glm::vec3(0.5f, 1.0f, 2.0f));
     ASSERT_TRUE(detail->minDepthMetres);
     EXPECT_NEAR(*detail->minDepthMetres, 2.5f, 0.01f);
-    EXPECT_NEAR(detail->surfaceShare.value_or(0.0f), 0.5f, 0.05f);
+    EXPECT_NEAR(detail->surfaceFraction.value_or(0.0f), 0.5f, 0.05f);
     EXPECT_EQ(detail->light.edge, 16u);
     EXPECT_EQ(detail->depth.edge, 32u);
     EXPECT_EQ(detail->normals.pixels.size(), 32u * 32u);

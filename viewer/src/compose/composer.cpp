@@ -51,7 +51,8 @@ void Composer::read(std::vector<fs::path> files, bool add) {
 
 void Composer::insert(const fs::path& file, const OctreeAsset& asset) {
     const glm::dvec3 place = placeBeside(bounds_, asset);
-    const SceneModel model{.path = editor.pathOf(file), .name = file.stem().string(), .translateMetres = place};
+    const SceneModel model{
+        .path = editor.pathOf(file), .name = file.stem().string(), .translateMetres = place};
     const WorldBounds own = boundsOf(asset, worldFromAsset(model, asset));
     if (!own.empty()) {
         bounds_.include(own.min);

@@ -1,5 +1,6 @@
-// Composer: what editing needs beside the document: models read in the background, the scene as it looks now, and the
-// question before unsaved changes are lost. Knows no window and no device; the session that owns it draws.
+// Composer: what editing needs beside the document: models read in the background, the scene as it looks now,
+// and the question before unsaved changes are lost. Knows no window and no device; the session that owns it
+// draws.
 #pragma once
 
 #include <deque>
@@ -24,12 +25,14 @@ class Composer {
     SceneEditor editor;
     Dialog dialog = Dialog::None;
 
-    /// What has been loaded from `file` becomes the document. A PF_VOX file makes one without a file of its own.
+    /// What has been loaded from `file` becomes the document. A PF_VOX file makes one without a file of its
+    /// own.
     void begin(const std::filesystem::path& file, const LoadedScene& loaded);
     /// An empty document without a file; paths count from `folder`.
     void beginEmpty(const std::filesystem::path& folder);
 
-    /// Reads models and adds each at the end, beside what is there; those that cannot be read are told and left out.
+    /// Reads models and adds each at the end, beside what is there; those that cannot be read are told and
+    /// left out.
     void addModels(const std::vector<std::filesystem::path>& files);
     /// A copy of the selected model beside it, on the X axis.
     void duplicateSelected(const LoadedScene& shown);
@@ -38,8 +41,8 @@ class Composer {
     void readAgain();
     bool isReading() const { return reading_.valid() || !toAdd_.empty(); }
 
-    /// Takes over what has been read, and gives the scene when it is no longer the one given last. A model that cannot be
-    /// read is told once; the scene then stays as it was.
+    /// Takes over what has been read, and gives the scene when it is no longer the one given last. A model
+    /// that cannot be read is told once; the scene then stays as it was.
     std::optional<LoadedScene> update();
 
     /// Does it, at once or when the question about unsaved changes has been answered.

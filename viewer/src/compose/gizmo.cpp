@@ -8,16 +8,18 @@ namespace pfvox::viewer {
 
 namespace {
 
-constexpr double kArrowUnits = 70.0;    // length of an arrow in the window
-constexpr double kReachUnits = 8.0;     // how near the cursor must come
-constexpr double kSquarePart = 0.35;    // of an arrow: edge of the ground's square
-constexpr double kCirclePart = 0.8;     // of an arrow: radius of the circle
-constexpr double kEdgeOn = 0.02;        // sine of the angle below which nothing is dragged
+constexpr double kArrowUnits = 70.0;  // length of an arrow in the window
+constexpr double kReachUnits = 8.0;   // how near the cursor must come
+constexpr double kSquarePart = 0.35;  // of an arrow: edge of the ground's square
+constexpr double kCirclePart = 0.8;   // of an arrow: radius of the circle
+constexpr double kEdgeOn = 0.02;      // sine of the angle below which nothing is dragged
 constexpr int kCirclePieces = 48;
 constexpr double kFar = std::numeric_limits<double>::infinity();
 
 glm::dvec3 axisOf(Handle handle) {
-    return handle == Handle::X ? glm::dvec3(1, 0, 0) : handle == Handle::Y ? glm::dvec3(0, 1, 0) : glm::dvec3(0, 0, 1);
+    return handle == Handle::X   ? glm::dvec3(1, 0, 0)
+           : handle == Handle::Y ? glm::dvec3(0, 1, 0)
+                                 : glm::dvec3(0, 0, 1);
 }
 
 double distanceToLine(const glm::dvec2& p, const glm::dvec2& a, const glm::dvec2& b) {
@@ -29,7 +31,8 @@ double distanceToLine(const glm::dvec2& p, const glm::dvec2& a, const glm::dvec2
 
 }  // namespace
 
-Gizmo::Gizmo(const Projection& projection, const glm::dvec3& origin) : projection_(projection), origin_(origin) {
+Gizmo::Gizmo(const Projection& projection, const glm::dvec3& origin)
+    : projection_(projection), origin_(origin) {
     const double depth = projection.depthOf(origin);
     if (projection.pointOf(origin)) size_ = kArrowUnits * projection.metresPerUnit(depth);
 }

@@ -8,7 +8,7 @@
 namespace pfvox::viewer {
 
 enum class Handle : std::uint8_t {
-    X,       ///< move along an axis of the world
+    X,  ///< move along an axis of the world
     Y,
     Z,
     Ground,  ///< move level
@@ -31,8 +31,8 @@ class Gizmo {
 
     /// The handle under the cursor.
     std::optional<Handle> handleAt(const glm::dvec2& cursor) const;
-    /// How far a drag from one point of the window to another moves, in metres; 0 for Turn, and where the plane or axis
-    /// is seen edge-on.
+    /// How far a drag from one point of the window to another moves, in metres; 0 for Turn, and where the
+    /// plane or axis is seen edge-on.
     glm::dvec3 moved(Handle handle, const glm::dvec2& from, const glm::dvec2& to) const;
     /// How far it turns, counter-clockwise about +Y, in radians.
     double turned(const glm::dvec2& from, const glm::dvec2& to) const;

@@ -5,7 +5,11 @@
 namespace pfvox::viewer {
 
 ModelDrag::ModelDrag(const SceneEditor& editor, const Gizmo& gizmo, Handle handle, const glm::dvec2& grip)
-    : gizmo_(gizmo), handle_(handle), grip_(grip), index_(*editor.selected()), start_(*editor.selectedModel()) {}
+    : gizmo_(gizmo),
+      handle_(handle),
+      grip_(grip),
+      index_(*editor.selected()),
+      start_(*editor.selectedModel()) {}
 
 Result<void> ModelDrag::moveTo(const glm::dvec2& cursor, SceneEditor& editor) const {
     SceneModel model = start_;

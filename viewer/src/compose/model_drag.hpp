@@ -8,7 +8,8 @@ namespace pfvox::viewer {
 
 class ModelDrag {
   public:
-    /// Precondition: the editor has a selected model. `grip` is the point of the window where the button went down.
+    /// Precondition: the editor has a selected model. `grip` is the point of the window where the button went
+    /// down.
     ModelDrag(const SceneEditor& editor, const Gizmo& gizmo, Handle handle, const glm::dvec2& grip);
 
     Handle handle() const { return handle_; }

@@ -46,10 +46,10 @@ glm::dvec3 turnedAngles(const glm::dvec3& rotateRadians, double radians) {
     return anglesOf(aboutAxis(radians, kUp) * rotationOf(rotateRadians));
 }
 
-SceneModel turnedAbout(SceneModel model, const glm::dvec3& centre, double radians) {
+SceneModel turnedAbout(SceneModel model, const glm::dvec3& center, double radians) {
     model.rotateRadians = turnedAngles(model.rotateRadians, radians);
     if (isUniform(model))
-        model.translateMetres = centre + aboutAxis(radians, kUp) * (model.translateMetres - centre);
+        model.translateMetres = center + aboutAxis(radians, kUp) * (model.translateMetres - center);
     return model;
 }
 
@@ -59,7 +59,7 @@ SceneModel resized(SceneModel model, const Resize& resize) {
     } else {
         model.metresPerVoxel = resize.factor * model.metresPerVoxel.value_or(resize.voxelMetres);
     }
-    model.translateMetres = resize.centre + resize.factor * (model.translateMetres - resize.centre);
+    model.translateMetres = resize.center + resize.factor * (model.translateMetres - resize.center);
     return model;
 }
 

@@ -19,7 +19,8 @@ void ModelShelf::put(const fs::path& file, std::shared_ptr<const OctreeAsset> as
 
 Result<std::shared_ptr<const OctreeAsset>> readModel(const fs::path& file, Diagnostics& diagnostics) {
     if (file.extension() == ".toml")
-        return fail(ErrorCode::BadMagic, file.string() + ": a scene cannot stand in a scene; open it, or add its models");
+        return fail(ErrorCode::BadMagic,
+                    file.string() + ": a scene cannot stand in a scene; open it, or add its models");
     PFVOX_TRY(const LoadedScene, loaded, loadScene(file, Limits{}, diagnostics));
     return loaded.parts.front().asset;
 }
@@ -45,8 +46,9 @@ Result<LoadedScene> arranged(const SceneEditor& editor, const ModelShelf& shelf,
         std::shared_ptr<const OctreeAsset> asset = shelf.find(editor.fileOf(model));
         instances += asset->instances.size();
         if (instances > Limits{}.maxInstances) {
-            return fail(ErrorCode::LimitExceeded, fmt::format("with model '{}' the scene has more than {} instances",
-                                                              labelOf(model), Limits{}.maxInstances));
+            return fail(ErrorCode::LimitExceeded,
+                        fmt::format("with model '{}' the scene has more than {} instances", labelOf(model),
+                                    Limits{}.maxInstances));
         }
         const Affine world = worldFromAsset(model, *asset);
         const WorldBounds bounds = boundsOf(*asset, world);

@@ -24,13 +24,14 @@ class ModelShelf {
 };
 
 /// Reads one PF_VOX file. Errors: those of loadScene on it.
-Result<std::shared_ptr<const OctreeAsset>> readModel(const std::filesystem::path& file, Diagnostics& diagnostics);
+Result<std::shared_ptr<const OctreeAsset>> readModel(const std::filesystem::path& file,
+                                                     Diagnostics& diagnostics);
 
 /// Files of visible models that the shelf does not have, each once.
 std::vector<std::filesystem::path> missingModels(const SceneEditor& editor, const ModelShelf& shelf);
 
-/// The edited scene with its models where they stand. Precondition: missingModels() is empty. Errors: LimitExceeded
-/// (instances, probes of the grid).
+/// The edited scene with its models where they stand. Precondition: missingModels() is empty. Errors:
+/// LimitExceeded (instances, probes of the grid).
 Result<LoadedScene> arranged(const SceneEditor& editor, const ModelShelf& shelf, Diagnostics& diagnostics);
 
 /// Boxes of the parts in the metres of their files, each file looked at once.

@@ -22,7 +22,8 @@ class Projection {
     /// Nothing when the point is behind the camera or next to it.
     std::optional<glm::dvec2> pointOf(const glm::dvec3& world) const;
     /// The part of a line in front of the camera; nothing when there is none.
-    std::optional<std::pair<glm::dvec2, glm::dvec2>> lineOf(const glm::dvec3& from, const glm::dvec3& to) const;
+    std::optional<std::pair<glm::dvec2, glm::dvec2>> lineOf(const glm::dvec3& from,
+                                                            const glm::dvec3& to) const;
     WorldRay rayAt(const glm::dvec2& point) const;
     /// Of a point, along the view; negative behind the camera.
     double depthOf(const glm::dvec3& world) const;

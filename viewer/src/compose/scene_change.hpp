@@ -1,4 +1,5 @@
-// SceneChange: one step of editing a scene, as what was before and what is after: it can be taken back and done again.
+// SceneChange: one step of editing a scene, as what was before and what is after: it can be taken back and
+// done again.
 #pragma once
 
 #include <functional>
@@ -10,7 +11,8 @@
 
 namespace pfvox::viewer {
 
-/// A model at a place of Scene::models. Without `before` it is inserted there, without `after` it is taken out.
+/// A model at a place of Scene::models. Without `before` it is inserted there, without `after` it is taken
+/// out.
 struct ModelChange {
     std::size_t index = 0;
     std::optional<SceneModel> before;
@@ -38,8 +40,8 @@ bool changesNothing(const SceneChange& change);
 /// Replaces the paths of the models on both sides.
 void replacePaths(SceneChange& change, const std::function<std::string(const std::string&)>& newPath);
 
-/// Whether a scene file can hold what the change brings: by the reader of scene files itself, so that there is one
-/// set of rules. Errors: BadValue, LimitExceeded.
+/// Whether a scene file can hold what the change brings: by the reader of scene files itself, so that there
+/// is one set of rules. Errors: BadValue, LimitExceeded.
 Result<void> checkChange(const SceneChange& change);
 
 }  // namespace pfvox::viewer

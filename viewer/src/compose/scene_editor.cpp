@@ -120,7 +120,8 @@ Result<void> SceneEditor::addModel(SceneModel model) {
     if (scene_.models.size() >= Limits{}.maxModels)
         return fail(ErrorCode::LimitExceeded, "the scene has as many models as a scene file may have");
     std::string what = fmt::format("add '{}'", labelOf(model));
-    return edit(std::move(what), ModelChange{.index = scene_.models.size(), .before = {}, .after = std::move(model)});
+    return edit(std::move(what),
+                ModelChange{.index = scene_.models.size(), .before = {}, .after = std::move(model)});
 }
 
 Result<void> SceneEditor::duplicateModel(std::size_t index, const glm::dvec3& shiftMetres) {
@@ -136,14 +137,16 @@ Result<void> SceneEditor::duplicateModel(std::size_t index, const glm::dvec3& sh
 Result<void> SceneEditor::removeModel(std::size_t index) {
     if (index >= scene_.models.size()) return fail(ErrorCode::BadReference, "there is no such model");
     const SceneModel& model = scene_.models[index];
-    return edit(fmt::format("remove '{}'", labelOf(model)), ModelChange{.index = index, .before = model, .after = {}});
+    return edit(fmt::format("remove '{}'", labelOf(model)),
+                ModelChange{.index = index, .before = model, .after = {}});
 }
 
 Result<void> SceneEditor::setModel(std::size_t index, SceneModel model, std::string_view gesture) {
     if (index >= scene_.models.size()) return fail(ErrorCode::BadReference, "there is no such model");
     const SceneModel& before = scene_.models[index];
     std::string what = whatOf(before, model);
-    return edit(std::move(what), ModelChange{.index = index, .before = before, .after = std::move(model)}, gesture);
+    return edit(std::move(what), ModelChange{.index = index, .before = before, .after = std::move(model)},
+                gesture);
 }
 
 Result<void> SceneEditor::setSun(const Sun& sun, std::string_view gesture) {
@@ -155,11 +158,13 @@ Result<void> SceneEditor::setSky(const Sky& sky, std::string_view gesture) {
 }
 
 Result<void> SceneEditor::setProbes(const ProbeGridRequest& probes, std::string_view gesture) {
-    return edit("probe grid", PartChange<ProbeGridRequest>{.before = scene_.probes, .after = probes}, gesture);
+    return edit("probe grid", PartChange<ProbeGridRequest>{.before = scene_.probes, .after = probes},
+                gesture);
 }
 
 Result<void> SceneEditor::setCameras(std::vector<Camera> cameras, std::string_view gesture) {
-    return edit("cameras", PartChange<std::vector<Camera>>{.before = scene_.cameras, .after = std::move(cameras)},
+    return edit("cameras",
+                PartChange<std::vector<Camera>>{.before = scene_.cameras, .after = std::move(cameras)},
                 gesture);
 }
 
@@ -194,7 +199,8 @@ std::string SceneEditor::pathOf(const fs::path& modelFile) const {
 }
 
 Result<void> SceneEditor::save() {
-    if (file_.empty()) return fail(ErrorCode::FileNotWritable, "the scene has no file yet: save it under a name");
+    if (file_.empty())
+        return fail(ErrorCode::FileNotWritable, "the scene has no file yet: save it under a name");
     PFVOX_CHECK(writeScene(file_, scene_));
     saved_ = scene_;
     endGesture();

@@ -1,9 +1,10 @@
-// SceneEditor: a scene that is being composed: its document, what is selected, and every step that can be undone.
+// SceneEditor: a scene that is being composed: its document, what is selected, and every step that can be
+// undone.
 //
 //     scene.toml -> reset() -> edits, undo(), redo() -> save() -> scene.toml
 //
-// Knows no window and no device. What an edit would make invalid is refused and changes nothing, so that the document
-// can be written at any time.
+// Knows no window and no device. What an edit would make invalid is refused and changes nothing, so that the
+// document can be written at any time.
 #pragma once
 
 #include <cstdint>
@@ -18,8 +19,8 @@ class SceneEditor {
   public:
     static constexpr std::size_t kMaxUndoSteps = 1000;
 
-    /// Another document: nothing to undo, nothing unsaved. `file` is empty as long as there is none; relative paths of
-    /// models count from `folder`.
+    /// Another document: nothing to undo, nothing unsaved. `file` is empty as long as there is none; relative
+    /// paths of models count from `folder`.
     void reset(Scene scene, std::filesystem::path file, std::filesystem::path folder);
 
     const Scene& scene() const { return scene_; }
@@ -40,10 +41,12 @@ class SceneEditor {
     /// The next model (or the one before) in the list, around its end.
     void selectNext(int step);
 
-    // Edits. Each ends the gesture before, unless it is of the same gesture: edits of one gesture (a drag, say) are one
-    // step to undo. Errors: BadValue, LimitExceeded (what no scene file may hold), BadReference (no such model).
+    // Edits. Each ends the gesture before, unless it is of the same gesture: edits of one gesture (a drag,
+    // say) are one step to undo. Errors: BadValue, LimitExceeded (what no scene file may hold), BadReference
+    // (no such model).
     Result<void> addModel(SceneModel model);  ///< at the end; becomes selected
-    Result<void> duplicateModel(std::size_t index, const glm::dvec3& shiftMetres);  ///< behind it; becomes selected
+    Result<void> duplicateModel(std::size_t index,
+                                const glm::dvec3& shiftMetres);  ///< behind it; becomes selected
     Result<void> removeModel(std::size_t index);
     Result<void> setModel(std::size_t index, SceneModel model, std::string_view gesture = {});
     Result<void> setSun(const Sun& sun, std::string_view gesture = {});
@@ -66,13 +69,14 @@ class SceneEditor {
 
     /// Writes file(), complete or not at all. Errors: FileNotWritable (also without a file()).
     Result<void> save();
-    /// Writes another file, which becomes file(); relative paths of models become those from its folder. Errors:
-    /// FileNotWritable; then all is as before.
+    /// Writes another file, which becomes file(); relative paths of models become those from its folder.
+    /// Errors: FileNotWritable; then all is as before.
     Result<void> saveAs(const std::filesystem::path& file);
 
     /// Where the file of a model is.
     std::filesystem::path fileOf(const SceneModel& model) const;
-    /// The path that a model has in this scene: relative to folder() when they have more than the root in common.
+    /// The path that a model has in this scene: relative to folder() when they have more than the root in
+    /// common.
     std::string pathOf(const std::filesystem::path& modelFile) const;
 
   private:

@@ -15,7 +15,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double kIdleSeconds = 0.1;        // between looks at the files when nothing happens
+constexpr double kIdleSeconds = 0.1;         // between looks at the files when nothing happens
 constexpr double kLongestStepSeconds = 0.1;  // of the camera, after a stall
 
 /// What lives while the window is open, in the order in which it is made.
@@ -31,7 +31,8 @@ Result<App> openWindow(const gpu::Device& device, Interaction& interaction, glm:
     PFVOX_TRY(std::unique_ptr<GlfwWindow>, window, GlfwWindow::create(size, "pfview", interaction));
     app.window = std::move(window);
     PFVOX_TRY(VkSurfaceKHR_T* const, surface, app.window->createSurface(device));
-    PFVOX_TRY(std::unique_ptr<Presenter>, presenter, Presenter::create(device, surface, app.window->pixels()));
+    PFVOX_TRY(std::unique_ptr<Presenter>, presenter,
+              Presenter::create(device, surface, app.window->pixels()));
     app.presenter = std::move(presenter);
     const std::filesystem::path layout =
         folders.state.empty() ? std::filesystem::path{} : folders.state / "pfvox/pfview-windows.ini";
@@ -62,7 +63,8 @@ Result<void> runLoop(App& app, Interaction& interaction, Session& session) {
     interaction.grabs = [&](glm::dvec2 parts) { return session.grabAt(parts); };
     while (!session.wantsToQuit()) {
         if (app.window->takeCloseRequest()) session.quit();
-        const bool busy = busyFrames > 0 || interaction.isMoving() || session.needsFrame(app.window->pixels());
+        const bool busy =
+            busyFrames > 0 || interaction.isMoving() || session.needsFrame(app.window->pixels());
         const Clock::time_point polled = Clock::now();
         const bool shown = app.window->pixels().x != 0;
         app.window->pollEvents(busy && shown ? 0.0 : kIdleSeconds);
@@ -115,8 +117,9 @@ Result<void> runWindow(const Options& options, Diagnostics& diagnostics) {
                              .atlas = options.picture.atlas};
     PFVOX_TRY(const std::unique_ptr<Session>, session, Session::create(device, start, memory, log));
     Interaction interaction(session->camera);
-    const glm::uvec2 size = options.sizeGiven ? glm::uvec2(options.picture.width, options.picture.height)
-                                              : glm::uvec2(memory.settings.windowWidth, memory.settings.windowHeight);
+    const glm::uvec2 size = options.sizeGiven
+                                ? glm::uvec2(options.picture.width, options.picture.height)
+                                : glm::uvec2(memory.settings.windowWidth, memory.settings.windowHeight);
     {
         PFVOX_TRY(App, app, openWindow(device, interaction, size, folders));
         PFVOX_CHECK(runLoop(app, interaction, *session));

@@ -7,8 +7,8 @@
 
 namespace pfvox::viewer {
 
-/// Returns when the window is closed. Errors: GpuUnavailable, GpuLost, GpuOutOfMemory; Internal when the validation
-/// layer, asked for, had complaints. Files that cannot be shown are no errors: the window tells.
+/// Returns when the window is closed. Errors: GpuUnavailable, GpuLost, GpuOutOfMemory; Internal when the
+/// validation layer, asked for, had complaints. Files that cannot be shown are no errors: the window tells.
 Result<void> runWindow(const Options& options, Diagnostics& diagnostics);
 
 }  // namespace pfvox::viewer

@@ -18,7 +18,8 @@ FileDialog::Request requestOf(Dialog dialog) {
         case Dialog::AddModel:
             return {.title = "Add a model", .button = "Add", .extensions = {".pf_vox"}};
         case Dialog::SaveAs:
-            return {.title = "Save the scene as", .button = "Save", .extensions = {".toml"}, .forWriting = true};
+            return {
+                .title = "Save the scene as", .button = "Save", .extensions = {".toml"}, .forWriting = true};
         default:
             return {.title = "Probes", .button = "Load", .extensions = {".pf_probe"}};
     }
@@ -73,7 +74,8 @@ void drawLeaveQuestion(Session& session) {
     const ImVec2 window = ImGui::GetIO().DisplaySize;
     if (!ImGui::IsPopupOpen(kTitle)) ImGui::OpenPopup(kTitle);
     ImGui::SetNextWindowPos({0.5f * window.x, 0.5f * window.y}, ImGuiCond_Appearing, {0.5f, 0.5f});
-    if (!ImGui::BeginPopupModal(kTitle, nullptr, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings))
+    if (!ImGui::BeginPopupModal(kTitle, nullptr,
+                                ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings))
         return;
     const fs::path& file = session.composer.editor.file();
     text(fmt::format("Save the changes to {}?", file.empty() ? "the new scene" : file.filename().string()));

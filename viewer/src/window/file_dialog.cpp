@@ -96,7 +96,8 @@ FileDialog::State FileDialog::draw(const Request& request) {
     }
     if (drawList(request)) state = State::Chosen;
     std::error_code ignored;
-    const bool replaces = request.forWriting && !path_.empty() && fs::is_regular_file(folder_ / fs::path(path_), ignored);
+    const bool replaces =
+        request.forWriting && !path_.empty() && fs::is_regular_file(folder_ / fs::path(path_), ignored);
     note(!error_.empty() ? error_ : replaces ? "replaces the file that is there" : " ");
     if (ImGui::Button(request.button) && accept(request)) state = State::Chosen;
     ImGui::SameLine();

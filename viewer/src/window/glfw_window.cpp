@@ -79,12 +79,13 @@ void GlfwLibrary::require(gpu::DeviceOptions& options) const {
     for (std::uint32_t i = 0; i < count; ++i) options.instanceExtensions.emplace_back(names[i]);
     options.deviceExtensions.emplace_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
     options.queueFits = [](const gpu::NativeQueueFamily& family) {
-        return glfwGetPhysicalDevicePresentationSupport(family.instance, family.physicalDevice, family.index) ==
-               GLFW_TRUE;
+        return glfwGetPhysicalDevicePresentationSupport(family.instance, family.physicalDevice,
+                                                        family.index) == GLFW_TRUE;
     };
 }
 
-GlfwWindow::GlfwWindow(GLFWwindow* window, Interaction& interaction) : window_(window), interaction_(&interaction) {
+GlfwWindow::GlfwWindow(GLFWwindow* window, Interaction& interaction)
+    : window_(window), interaction_(&interaction) {
     glfwSetWindowUserPointer(window_, this);
     installCallbacks();
 }
@@ -120,8 +121,9 @@ void GlfwWindow::installCallbacks() {
         self.interaction_->key(which, action != GLFW_RELEASE, (mods & GLFW_MOD_CONTROL) != 0,
                                (mods & GLFW_MOD_SHIFT) != 0);
     });
-    glfwSetCursorPosCallback(window_,
-                             [](GLFWwindow* w, double x, double y) { of(w).interaction_->cursor({x, y}); });
+    glfwSetCursorPosCallback(window_, [](GLFWwindow* w, double x, double y) {
+        of(w).interaction_->cursor({x, y});
+    });
     glfwSetMouseButtonCallback(window_, [](GLFWwindow* w, int button, int action, int mods) {
         GlfwWindow& self = of(w);
         if (action == GLFW_PRESS) self.pressed_.modifiers |= mods;

@@ -1,4 +1,5 @@
-// GlfwWindow: the window itself: size, events, dropped files. What they mean is Interaction's and Session's affair.
+// GlfwWindow: the window itself: size, events, dropped files. What they mean is Interaction's and Session's
+// affair.
 #pragma once
 
 #include <filesystem>

@@ -28,14 +28,15 @@ void drawSun(Session& session) {
         sun.direction = -glm::dvec3(std::cos(h) * std::sin(a), std::sin(h), std::cos(h) * std::cos(a));
         session.composer.tell(editor.setSun(sun, "direction"));
     }
-    // Strength apart from the colour: the largest channel.
+    // Strength apart from the color: the largest channel.
     double strength = std::max({sun.irradiance.r, sun.irradiance.g, sun.irradiance.b});
-    glm::dvec3 colour = strength > 0.0 ? sun.irradiance / strength : glm::dvec3(1.0);
-    const bool tinted = editColour("sun colour", colour, editor);
-    const bool scaled = dragNumber("sun strength", strength, {.speed = 0.02f, .low = 0.0, .high = 1e6}, editor);
+    glm::dvec3 color = strength > 0.0 ? sun.irradiance / strength : glm::dvec3(1.0);
+    const bool tinted = editColor("sun color", color, editor);
+    const bool scaled =
+        dragNumber("sun strength", strength, {.speed = 0.02f, .low = 0.0, .high = 1e6}, editor);
     if (tinted || scaled) {
-        sun.irradiance = strength * colour;
-        session.composer.tell(editor.setSun(sun, tinted ? "colour" : "strength"));
+        sun.irradiance = strength * color;
+        session.composer.tell(editor.setSun(sun, tinted ? "color" : "strength"));
     }
 }
 
@@ -45,24 +46,27 @@ void drawSunAndSky(Session& session) {
     SceneEditor& editor = session.composer.editor;
     drawSun(session);
     Sky sky = editor.scene().sky;
-    const bool zenith = editColour("zenith", sky.zenith, editor);
-    const bool horizon = editColour("horizon", sky.horizon, editor);
-    const bool ground = editColour("ground", sky.ground, editor);
+    const bool zenith = editColor("zenith", sky.zenith, editor);
+    const bool horizon = editColor("horizon", sky.horizon, editor);
+    const bool ground = editColor("ground", sky.ground, editor);
     if (zenith || horizon || ground) session.composer.tell(editor.setSky(sky, "sky"));
 }
 
 void Panels::drawRendering(Session& session) {
     const ImVec2 window = ImGui::GetIO().DisplaySize;
-    if (beginPanel("Rendering", renderingOpen_, {kMargin, std::max(470.0f, window.y - 250.0f)}, {kPanelWidth, 242.0f})) {
+    if (beginPanel("Rendering", renderingOpen_, {kMargin, std::max(470.0f, window.y - 250.0f)},
+                   {kPanelWidth, 242.0f})) {
         ImGui::PushItemWidth(-96.0f);
         if (ImGui::BeginCombo("view", std::string(toString(session.mode)).c_str())) {
             for (const ViewEntry& view : viewModes()) {
-                const bool chosen = ImGui::Selectable(std::string(view.name).c_str(), view.mode == session.mode);
+                const bool chosen =
+                    ImGui::Selectable(std::string(view.name).c_str(), view.mode == session.mode);
                 if (chosen) session.execute(*bindingOf(Command::ShowView, static_cast<int>(view.mode)));
             }
             ImGui::EndCombo();
         }
-        if (session.shown() != nullptr && ImGui::CollapsingHeader("sun and sky", ImGuiTreeNodeFlags_DefaultOpen))
+        if (session.shown() != nullptr &&
+            ImGui::CollapsingHeader("sun and sky", ImGuiTreeNodeFlags_DefaultOpen))
             drawSunAndSky(session);
         if (session.shown() != nullptr && session.probes() == nullptr)
             note(
@@ -72,7 +76,8 @@ void Panels::drawRendering(Session& session) {
             slider("exposure", session.settings.exposureStops, -8.0, 8.0, "%.1f stops");
             if (ImGui::BeginCombo("tone map", std::string(toString(session.settings.toneMap)).c_str())) {
                 for (const ToneMapEntry& map : toneMaps()) {
-                    if (ImGui::Selectable(std::string(map.name).c_str(), map.toneMap == session.settings.toneMap))
+                    if (ImGui::Selectable(std::string(map.name).c_str(),
+                                          map.toneMap == session.settings.toneMap))
                         session.settings.toneMap = map.toneMap;
                 }
                 ImGui::EndCombo();

@@ -14,7 +14,8 @@ void drawFileMenu(Session& session) {
     commandItem(session, "New scene", Command::NewScene);
     commandItem(session, "Open ...", Command::Open);
     commandItem(session, "Add model ...", Command::AddModel);
-    if (ImGui::MenuItem("Load probes ...", nullptr, false, shown)) session.composer.dialog = Dialog::LoadProbes;
+    if (ImGui::MenuItem("Load probes ...", nullptr, false, shown))
+        session.composer.dialog = Dialog::LoadProbes;
     ImGui::Separator();
     commandItem(session, "Save", Command::Save, shown);
     commandItem(session, "Save as ...", Command::SaveAs, shown);
@@ -39,12 +40,14 @@ void drawEditMenu(Session& session) {
     commandItem(session, "Remove", Command::Remove, selected);
     commandItem(session, "Select next", Command::SelectNext, !editor.scene().models.empty());
     if (ImGui::MenuItem("Select nothing", "Esc", false, selected)) editor.select(std::nullopt);
-    if (ImGui::MenuItem("Camera from this view", nullptr, false, session.shown() != nullptr)) session.addCamera();
+    if (ImGui::MenuItem("Camera from this view", nullptr, false, session.shown() != nullptr))
+        session.addCamera();
 }
 
 void drawViewMenu(Session& session) {
     commandItem(session, "Frame everything", Command::FrameAll);
-    commandItem(session, "Frame selected", Command::FrameSelected, session.composer.editor.selected().has_value());
+    commandItem(session, "Frame selected", Command::FrameSelected,
+                session.composer.editor.selected().has_value());
     commandItem(session, "Fly", Command::ToggleCameraMode, true, session.camera.mode == CameraMode::Fly);
     commandItem(session, "Next camera", Command::NextCamera);
     ImGui::Separator();

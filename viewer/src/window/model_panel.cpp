@@ -45,8 +45,10 @@ void drawScale(Session& session, std::size_t index, const SceneModel& now) {
     const PlacedAsset* const part = partOf(session, index);
     SceneModel model = now;
     int kind = static_cast<int>(scaleKindOf(model));
-    if (ImGui::Combo("scale by", &kind, "the file's voxel size\0metres per voxel\0edges of the cube\0") && part)
-        session.composer.tell(editor.setModel(index, withScaleKind(model, static_cast<ScaleKind>(kind), *part->asset)));
+    if (ImGui::Combo("scale by", &kind, "the file's voxel size\0metres per voxel\0edges of the cube\0") &&
+        part)
+        session.composer.tell(
+            editor.setModel(index, withScaleKind(model, static_cast<ScaleKind>(kind), *part->asset)));
     if (model.metresPerVoxel && dragNumber("m / voxel", *model.metresPerVoxel, kVoxelSize, editor))
         session.composer.tell(editor.setModel(index, model, "scale"));
     if (model.cubeEdgeMetres && dragVector("edges (m)", *model.cubeEdgeMetres, {.speed = 0.02f}, editor))

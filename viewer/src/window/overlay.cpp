@@ -14,8 +14,8 @@ namespace pfvox::viewer {
 
 namespace {
 
-/// Dear ImGui before 1.87 sees which keys are down when a frame begins: one that went down and up while a slow frame
-/// was computed would be lost. Such keys are down for the frame that follows.
+/// Dear ImGui before 1.87 sees which keys are down when a frame begins: one that went down and up while a
+/// slow frame was computed would be lost. Such keys are down for the frame that follows.
 class BriefKeys {
   public:
     explicit BriefKeys(const GlfwWindow::Pressed& pressed) {
@@ -73,12 +73,12 @@ Result<void> Overlay::start(Presenter& presenter) {
     const gpu::NativeDevice& native = presenter.native();
     device_ = vk::Device(native.device);
     try {
-        const vk::DescriptorPoolSize size{.type = vk::DescriptorType::eCombinedImageSampler, .descriptorCount = 1};
+        const vk::DescriptorPoolSize size{.type = vk::DescriptorType::eCombinedImageSampler,
+                                          .descriptorCount = 1};
         descriptors_ = vk::Device(native.device)
-                           .createDescriptorPoolUnique(
-                               vk::DescriptorPoolCreateInfo{
-                                   .flags = vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet, .maxSets = 1}
-                                   .setPoolSizes(size));
+                           .createDescriptorPoolUnique(vk::DescriptorPoolCreateInfo{
+                               .flags = vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet, .maxSets = 1}
+                                                           .setPoolSizes(size));
     } catch (const vk::Error& error) {
         return fail(ErrorCode::GpuUnavailable, std::string("overlay: ") + error.what());
     }
@@ -95,7 +95,8 @@ Result<void> Overlay::start(Presenter& presenter) {
     info.MSAASamples = VK_SAMPLE_COUNT_1_BIT;
     rendererStarted_ = platformStarted_ && ImGui_ImplVulkan_Init(&info, presenter.renderPass());
     if (!rendererStarted_) return fail(ErrorCode::GpuUnavailable, "the overlay cannot be drawn");
-    PFVOX_CHECK(presenter.runOnce([](VkCommandBuffer commands) { ImGui_ImplVulkan_CreateFontsTexture(commands); }));
+    PFVOX_CHECK(
+        presenter.runOnce([](VkCommandBuffer commands) { ImGui_ImplVulkan_CreateFontsTexture(commands); }));
     ImGui_ImplVulkan_DestroyFontUploadObjects();
     return {};
 }
@@ -103,7 +104,7 @@ Result<void> Overlay::start(Presenter& presenter) {
 Overlay::~Overlay() {
     try {
         if (device_) device_.waitIdle();  // the last frame may still use what goes now
-    } catch (const vk::Error&) {  // of a lost device: nothing is under way
+    } catch (const vk::Error&) {          // of a lost device: nothing is under way
     }
     if (rendererStarted_) ImGui_ImplVulkan_Shutdown();
     if (platformStarted_) ImGui_ImplGlfw_Shutdown();

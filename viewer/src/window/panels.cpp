@@ -23,7 +23,7 @@ void drawCounts(const gpu::SceneStatistics& s) {
 void drawPick(const Session& session, const Pick& pick) {
     ImGui::Separator();
     const auto c = glm::vec4(pick.baseColor) / 255.0f;
-    ImGui::ColorButton("base colour", ImVec4(c.x, c.y, c.z, 1.0f));
+    ImGui::ColorButton("base color", ImVec4(c.x, c.y, c.z, 1.0f));
     ImGui::SameLine();
     text(fmt::format("voxel {}, {}, {}", pick.voxel.x, pick.voxel.y, pick.voxel.z));
     text(fmt::format("model {}\ninstance {}\nmaterial {}", pick.model, pick.instance, pick.material));
@@ -83,7 +83,8 @@ void drawStrip(const Session& session, const std::string& message) {
         ImGui::PopTextWrapPos();
         if (ImGui::SmallButton("close")) session.log().dismissStrip();
         // Above the other windows whatever was clicked last, but below what asks.
-        if (!ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup)) ImGui::BringWindowToDisplayFront(ImGui::GetCurrentWindow());
+        if (!ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup))
+            ImGui::BringWindowToDisplayFront(ImGui::GetCurrentWindow());
     }
     ImGui::End();
     ImGui::PopStyleColor();
@@ -125,18 +126,21 @@ void Panels::drawStatistics(const Session& session) {
             const float top = std::min(worst, 3.0f * sorted[sorted.size() / 2]);
             ImGui::PlotLines("##frames", times.data(), static_cast<int>(times.size()), 0, nullptr, 0.0f, top,
                              ImVec2(ImGui::GetContentRegionAvail().x, 34.0f));
-            text(fmt::format("frame {} on the device, worst {}", millisecondsText(s.gpuMs), millisecondsText(worst)));
+            text(fmt::format("frame {} on the device, worst {}", millisecondsText(s.gpuMs),
+                             millisecondsText(worst)));
             const auto rays = static_cast<double>(s.cameraRays);
             text(fmt::format("{:.2f} million camera rays/s", s.gpuMs > 0.0 ? rays / s.gpuMs * 1e-3 : 0.0));
             const double secondary = static_cast<double>(s.sunRays + s.ambientRays + s.reflectionRays);
             text(fmt::format("{:.2f} million rays/s of light",
                              s.gpuMs > 0.0 ? secondary / s.gpuMs * 1e-3 : 0.0));
-            text(fmt::format("{:.1f} steps a camera ray", rays > 0.0 ? static_cast<double>(s.steps) / rays : 0.0));
+            text(fmt::format("{:.1f} steps a camera ray",
+                             rays > 0.0 ? static_cast<double>(s.steps) / rays : 0.0));
             drawPasses(s.passMs);
             text(fmt::format("{} frames in the picture", session.frames().frames()));
         }
         const gpu::MemoryUse memory = session.device().memory();
-        text(fmt::format("memory {}, at most {}", bytesText(memory.currentBytes), bytesText(memory.peakBytes)));
+        text(fmt::format("memory {}, at most {}", bytesText(memory.currentBytes),
+                         bytesText(memory.peakBytes)));
     }
     ImGui::End();
 }
@@ -147,10 +151,10 @@ void Panels::drawLog(const Session& session) {
     const ImVec2 size(std::max(200.0f, window.x - 2.0f * kPanelWidth - 4.0f * kMargin), 100.0f);
     if (beginPanel("Log", logOpen_, place, size)) {
         for (const Message& message : session.log().messages()) {
-            const ImVec4 colour = message.kind == MessageKind::Error     ? ImVec4(1.0f, 0.45f, 0.4f, 1.0f)
-                                  : message.kind == MessageKind::Warning ? ImVec4(1.0f, 0.85f, 0.4f, 1.0f)
-                                                                         : ImVec4(0.85f, 0.85f, 0.85f, 1.0f);
-            ImGui::PushStyleColor(ImGuiCol_Text, colour);
+            const ImVec4 color = message.kind == MessageKind::Error     ? ImVec4(1.0f, 0.45f, 0.4f, 1.0f)
+                                 : message.kind == MessageKind::Warning ? ImVec4(1.0f, 0.85f, 0.4f, 1.0f)
+                                                                        : ImVec4(0.85f, 0.85f, 0.85f, 1.0f);
+            ImGui::PushStyleColor(ImGuiCol_Text, color);
             ImGui::PushTextWrapPos(0.0f);
             text(message.text);
             ImGui::PopTextWrapPos();

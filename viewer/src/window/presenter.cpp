@@ -30,15 +30,17 @@ Result<void> guarded(F&& f) {
 vk::SurfaceFormatKHR chooseFormat(const std::vector<vk::SurfaceFormatKHR>& formats) {
     for (const vk::Format wanted : {vk::Format::eB8G8R8A8Unorm, vk::Format::eR8G8B8A8Unorm}) {
         for (const vk::SurfaceFormatKHR& format : formats) {
-            if (format.format == wanted && format.colorSpace == vk::ColorSpaceKHR::eSrgbNonlinear) return format;
+            if (format.format == wanted && format.colorSpace == vk::ColorSpaceKHR::eSrgbNonlinear)
+                return format;
         }
     }
     throw std::runtime_error("the window takes no 8-bit pictures without conversion");
 }
 
-constexpr vk::ImageSubresourceRange kColour{
+constexpr vk::ImageSubresourceRange kColor{
     .aspectMask = vk::ImageAspectFlagBits::eColor, .levelCount = 1, .layerCount = 1};
-constexpr vk::ImageSubresourceLayers kColourLayer{.aspectMask = vk::ImageAspectFlagBits::eColor, .layerCount = 1};
+constexpr vk::ImageSubresourceLayers kColorLayer{.aspectMask = vk::ImageAspectFlagBits::eColor,
+                                                 .layerCount = 1};
 
 struct Transition {
     vk::ImageLayout from, to;
@@ -53,14 +55,15 @@ void change(vk::CommandBuffer commands, vk::Image image, const Transition& t) {
                                          .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
                                          .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
                                          .image = image,
-                                         .subresourceRange = kColour};
+                                         .subresourceRange = kColor};
     commands.pipelineBarrier(t.before, t.after, {}, nullptr, nullptr, barrier);
 }
 
 std::uint32_t localMemoryType(vk::PhysicalDevice device, std::uint32_t allowed) {
     const vk::PhysicalDeviceMemoryProperties memory = device.getMemoryProperties();
     for (std::uint32_t i = 0; i < memory.memoryTypeCount; ++i) {
-        const bool local = bool(memory.memoryTypes[i].propertyFlags & vk::MemoryPropertyFlagBits::eDeviceLocal);
+        const bool local =
+            bool(memory.memoryTypes[i].propertyFlags & vk::MemoryPropertyFlagBits::eDeviceLocal);
         if ((allowed >> i & 1u) != 0 && local) return i;
     }
     throw std::runtime_error("no memory for the picture");
@@ -69,7 +72,10 @@ std::uint32_t localMemoryType(vk::PhysicalDevice device, std::uint32_t allowed) 
 }  // namespace
 
 Presenter::Presenter(const gpu::NativeDevice& native, VkSurfaceKHR surface)
-    : native_(native), device_(native.device), queue_(native.queue), surface_(surface, vk::Instance(native.instance)) {}
+    : native_(native),
+      device_(native.device),
+      queue_(native.queue),
+      surface_(surface, vk::Instance(native.instance)) {}
 
 Presenter::~Presenter() {
     try {
@@ -84,13 +90,14 @@ Result<std::unique_ptr<Presenter>> Presenter::create(const gpu::Device& device, 
     PFVOX_CHECK(guarded([&] {
         const vk::PhysicalDevice physical(made->native_.physicalDevice);
         const std::uint32_t family = made->native_.queueFamily;
-        if (!physical.getSurfaceSupportKHR(family, surface)) throw std::runtime_error("the device cannot show pictures in it");
+        if (!physical.getSurfaceSupportKHR(family, surface))
+            throw std::runtime_error("the device cannot show pictures in it");
         made->format_ = chooseFormat(physical.getSurfaceFormatsKHR(surface));
         made->createRenderPass();
         made->pool_ = made->device_.createCommandPoolUnique(
             {.flags = vk::CommandPoolCreateFlagBits::eResetCommandBuffer, .queueFamilyIndex = family});
-        made->commands_ = std::move(
-            made->device_.allocateCommandBuffersUnique({.commandPool = *made->pool_, .commandBufferCount = 1})[0]);
+        made->commands_ = std::move(made->device_.allocateCommandBuffersUnique(
+            {.commandPool = *made->pool_, .commandBufferCount = 1})[0]);
         made->acquired_ = made->device_.createSemaphoreUnique({});
         made->done_ = made->device_.createFenceUnique({.flags = vk::FenceCreateFlagBits::eSignaled});
         made->recreateSwapchain(windowPixels);
@@ -107,9 +114,10 @@ void Presenter::createRenderPass() {
                                                .stencilStoreOp = vk::AttachmentStoreOp::eDontCare,
                                                .initialLayout = vk::ImageLayout::eColorAttachmentOptimal,
                                                .finalLayout = vk::ImageLayout::ePresentSrcKHR};
-    const vk::AttachmentReference colour{.attachment = 0, .layout = vk::ImageLayout::eColorAttachmentOptimal};
-    const auto subpass = vk::SubpassDescription{.pipelineBindPoint = vk::PipelineBindPoint::eGraphics}
-                             .setColorAttachments(colour);
+    const vk::AttachmentReference color{.attachment = 0, .layout = vk::ImageLayout::eColorAttachmentOptimal};
+    const auto subpass =
+        vk::SubpassDescription{.pipelineBindPoint = vk::PipelineBindPoint::eGraphics}.setColorAttachments(
+            color);
     renderPass_ = device_.createRenderPassUnique(
         vk::RenderPassCreateInfo{}.setAttachments(attachment).setSubpasses(subpass));
 }
@@ -149,11 +157,10 @@ void Presenter::recreateSwapchain(glm::uvec2 windowPixels) {
         made.view = device_.createImageViewUnique({.image = image,
                                                    .viewType = vk::ImageViewType::e2D,
                                                    .format = format_.format,
-                                                   .subresourceRange = kColour});
-        made.framebuffer = device_.createFramebufferUnique(
-            vk::FramebufferCreateInfo{
-                .renderPass = *renderPass_, .width = extent_.x, .height = extent_.y, .layers = 1}
-                .setAttachments(*made.view));
+                                                   .subresourceRange = kColor});
+        made.framebuffer = device_.createFramebufferUnique(vk::FramebufferCreateInfo{
+            .renderPass = *renderPass_, .width = extent_.x, .height = extent_.y, .layers = 1}
+                                                               .setAttachments(*made.view));
         images_.push_back(std::move(made));
     }
 }
@@ -187,17 +194,19 @@ void Presenter::copyPicture(const Image& target, const ShownPixels& pixels) {
     const vk::AccessFlags write = vk::AccessFlagBits::eTransferWrite;
     const vk::CommandBuffer commands = *commands_;
     change(commands, *picture_, {eUndefined, eTransferDstOptimal, transfer, transfer, {}, write});
-    const vk::BufferImageCopy whole{.imageSubresource = kColourLayer, .imageExtent = {pixels.size.x, pixels.size.y, 1}};
+    const vk::BufferImageCopy whole{.imageSubresource = kColorLayer,
+                                    .imageExtent = {pixels.size.x, pixels.size.y, 1}};
     commands.copyBufferToImage(gpu::nativeOf(*pixels.buffer), *picture_, eTransferDstOptimal, whole);
-    change(commands, *picture_, {eTransferDstOptimal, eTransferSrcOptimal, transfer, transfer, write,
-                                 vk::AccessFlagBits::eTransferRead});
+    change(commands, *picture_,
+           {eTransferDstOptimal, eTransferSrcOptimal, transfer, transfer, write,
+            vk::AccessFlagBits::eTransferRead});
     const auto corner = [](glm::uvec2 size) {
         return vk::Offset3D{static_cast<std::int32_t>(size.x), static_cast<std::int32_t>(size.y), 1};
     };
     const std::array<vk::Offset3D, 2> from{vk::Offset3D{}, corner(pixels.size)};
     const std::array<vk::Offset3D, 2> to{vk::Offset3D{}, corner(extent_)};
     const vk::ImageBlit blit{
-        .srcSubresource = kColourLayer, .srcOffsets = from, .dstSubresource = kColourLayer, .dstOffsets = to};
+        .srcSubresource = kColorLayer, .srcOffsets = from, .dstSubresource = kColorLayer, .dstOffsets = to};
     const vk::Filter filter = pixels.size == extent_ ? vk::Filter::eNearest : vk::Filter::eLinear;
     commands.blitImage(*picture_, eTransferSrcOptimal, target.image, eTransferDstOptimal, blit, filter);
 }
@@ -213,8 +222,8 @@ void Presenter::record(const Image& target, const ShownPixels& pixels,
     if (pixels.buffer != nullptr) {
         copyPicture(target, pixels);
     } else {
-        const vk::ClearColorValue grey(std::array<float, 4>{0.10f, 0.11f, 0.12f, 1.0f});
-        commands.clearColorImage(target.image, eTransferDstOptimal, grey, kColour);
+        const vk::ClearColorValue gray(std::array<float, 4>{0.10f, 0.11f, 0.12f, 1.0f});
+        commands.clearColorImage(target.image, eTransferDstOptimal, gray, kColor);
     }
     change(commands, target.image,
            {eTransferDstOptimal, eColorAttachmentOptimal, transfer,

@@ -1,4 +1,5 @@
-// Presenter: shows pixels that were computed on a device in a window: surface, swapchain and one command buffer a frame.
+// Presenter: shows pixels that were computed on a device in a window: surface, swapchain and one command
+// buffer a frame.
 //
 //     pixels (buffer) -> image -> scaled into the swapchain's image -> overlay drawn upon it -> screen
 #pragma once
@@ -30,8 +31,8 @@ class Presenter {
 
     /// Waits until the frame that was shown last uses no pixels any more. Errors: as show().
     Result<void> finish();
-    /// Waits for the frame before, then draws and shows one. Does nothing while the window has no area. Errors:
-    /// GpuLost, GpuUnavailable.
+    /// Waits for the frame before, then draws and shows one. Does nothing while the window has no area.
+    /// Errors: GpuLost, GpuUnavailable.
     Result<void> show(glm::uvec2 windowPixels, const ShownPixels& pixels,
                       const std::function<void(VkCommandBuffer)>& drawOverlay);
     /// Records commands, runs them and waits. Errors: as show().

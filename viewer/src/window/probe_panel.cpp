@@ -34,7 +34,8 @@ std::string givenText(const ProbeGridRequest& probes) {
     if (probes.stepMetres) given.emplace_back("step");
     if (probes.count) given.emplace_back("counts");
     if (given.empty()) return "fitted to the scene by who bakes";
-    return fmt::format("{} as in the file{}", fmt::join(given, ", "), given.size() < 3 ? ", else fitted" : "");
+    return fmt::format("{} as in the file{}", fmt::join(given, ", "),
+                       given.size() < 3 ? ", else fitted" : "");
 }
 
 void drawField(Session& session) {
@@ -52,11 +53,13 @@ void drawField(Session& session) {
     std::vector<ProbeRecord> records;
     for (const ShownProbe& probe : probes->probes) records.push_back(probe.record);
     const ProbeCounts counts = countProbes(records);
-    text(fmt::format("{} active, {} of them relocated; {} inactive", counts.active, counts.relocated, counts.inactive));
+    text(fmt::format("{} active, {} of them relocated; {} inactive", counts.active, counts.relocated,
+                     counts.inactive));
     const ProbeResolution& maps = probes->info.resolution;
     note(fmt::format("maps {} depth, {} light, {} irradiance, {}", maps.depth, maps.light, maps.irradiance,
                      bytesText(probes->field.statistics().totalBytes())));
-    if (!probes->ofThisScene || session.composer.editor.isChanged()) note("baked for another state of the scene");
+    if (!probes->ofThisScene || session.composer.editor.isChanged())
+        note("baked for another state of the scene");
 }
 
 /// Which maps an atlas view shows: one page after the other, or one probe.
@@ -69,7 +72,9 @@ void drawAtlasChoice(Session& session) {
     ImGui::BeginDisabled(!alone && !session.selectedProbe);
     ImGui::Checkbox("the selected probe alone", &alone);
     ImGui::EndDisabled();
-    atlas.probe = alone && session.selectedProbe ? static_cast<std::int32_t>(*session.selectedProbe) : alone ? atlas.probe : -1;
+    atlas.probe = alone && session.selectedProbe ? static_cast<std::int32_t>(*session.selectedProbe)
+                  : alone                        ? atlas.probe
+                                                 : -1;
     if (maps->pages < 2) return;
     ImGui::BeginDisabled(maps->page == 0);
     if (ImGui::ArrowButton("##page before", ImGuiDir_Left)) atlas.page = maps->page - 1;
@@ -79,7 +84,8 @@ void drawAtlasChoice(Session& session) {
     if (ImGui::ArrowButton("##page after", ImGuiDir_Right)) atlas.page = maps->page + 1;
     ImGui::EndDisabled();
     ImGui::SameLine();
-    text(fmt::format("page {} of {}: probes {} to {}", maps->page + 1, maps->pages, maps->first, maps->first + maps->count - 1));
+    text(fmt::format("page {} of {}: probes {} to {}", maps->page + 1, maps->pages, maps->first,
+                     maps->first + maps->count - 1));
 }
 
 }  // namespace
@@ -116,13 +122,16 @@ void drawProbeGrid(Session& session) {
 }
 
 void Panels::drawProbeDetail(Session& session) {
-    if (!session.selectedProbe) return note(session.shownAtlas() ? "click a map for the probe's figures" : "click a probe of the grid for its figures");
+    if (!session.selectedProbe)
+        return note(session.shownAtlas() ? "click a map for the probe's figures"
+                                         : "click a probe of the grid for its figures");
     const std::uint32_t index = *session.selectedProbe;
     const ProbeGrid& grid = session.shown()->loaded.probes;
     const glm::uvec3 place = grid.placeOf(index);
     const glm::dvec3 at = session.placeOfProbe(index);
     ImGui::Separator();
-    text(fmt::format("probe {} ({}, {}, {}) at {:.2f}, {:.2f}, {:.2f} m", index, place.x, place.y, place.z, at.x, at.y, at.z));
+    text(fmt::format("probe {} ({}, {}, {}) at {:.2f}, {:.2f}, {:.2f} m", index, place.x, place.y, place.z,
+                     at.x, at.y, at.z));
     const ShownProbes* const probes = session.probes();
     if (probes == nullptr || !(probes->info.grid == grid)) return note("not baked at this place");
     const auto wanted = std::pair(probes->file, index);
@@ -139,13 +148,15 @@ void Panels::drawProbeDetail(Session& session) {
     text(fmt::format("indirect mean {:.3f} {:.3f} {:.3f}", d.meanLight.r, d.meanLight.g, d.meanLight.b));
     text(fmt::format("indirect max {:.3f} {:.3f} {:.3f}", d.maxLight.r, d.maxLight.g, d.maxLight.b));
     if (d.minDepthMetres) text(fmt::format("nearest surface {:.3f} m", *d.minDepthMetres));
-    if (d.surfaceShare) text(fmt::format("sees surfaces in {:.0f} % of all directions", 100.0f * *d.surfaceShare));
-    const float size = std::max(40.0f, (ImGui::GetContentRegionAvail().x - 2.0f * ImGui::GetStyle().ItemSpacing.x) / 3.0f);
-    drawSmallMap("light", d.light.edge, d.light.pixels, size);
+    if (d.surfaceFraction)
+        text(fmt::format("sees surfaces in {:.0f} % of all directions", 100.0f * *d.surfaceFraction));
+    const float size =
+        std::max(40.0f, (ImGui::GetContentRegionAvail().x - 2.0f * ImGui::GetStyle().ItemSpacing.x) / 3.0f);
+    drawSmallMap("light", d.light.resolution, d.light.pixels, size);
     ImGui::SameLine();
-    drawSmallMap("normals", d.normals.edge, d.normals.pixels, size);
+    drawSmallMap("normals", d.normals.resolution, d.normals.pixels, size);
     ImGui::SameLine();
-    drawSmallMap("depth", d.depth.edge, d.depth.pixels, size);
+    drawSmallMap("depth", d.depth.resolution, d.depth.pixels, size);
     ImGui::NewLine();
 }
 

@@ -12,8 +12,8 @@ namespace pfvox::viewer {
 
 namespace {
 
-constexpr ImU32 kBoxColour = IM_COL32(160, 200, 255, 120);
-constexpr ImU32 kSelectedColour = IM_COL32(255, 190, 60, 255);
+constexpr ImU32 kBoxColor = IM_COL32(160, 200, 255, 120);
+constexpr ImU32 kSelectedColor = IM_COL32(255, 190, 60, 255);
 constexpr std::size_t kMostBoxes = 4000;
 constexpr std::uint64_t kMostProbes = 30000;  // beyond that every so-manieth is drawn
 constexpr double kNearProbeUnits = 7.0;
@@ -26,7 +26,10 @@ ImVec2 at(const glm::dvec2& point) {
 class OverlayDrawing {
   public:
     OverlayDrawing(const Session& session, const glm::dvec2& cursor)
-        : session_(session), view_(session.projection()), cursor_(cursor), list_(ImGui::GetBackgroundDrawList()) {}
+        : session_(session),
+          view_(session.projection()),
+          cursor_(cursor),
+          list_(ImGui::GetBackgroundDrawList()) {}
 
     void draw() {
         if (session_.settings.showProbeGrid) drawProbes();
@@ -40,9 +43,9 @@ class OverlayDrawing {
     }
 
   private:
-    void line(const glm::dvec3& a, const glm::dvec3& b, ImU32 colour, float width) {
+    void line(const glm::dvec3& a, const glm::dvec3& b, ImU32 color, float width) {
         const auto seen = view_.lineOf(a, b);
-        if (seen) list_->AddLine(at(seen->first), at(seen->second), colour, width);
+        if (seen) list_->AddLine(at(seen->first), at(seen->second), color, width);
     }
 
     /// Turned as the model is.
@@ -58,24 +61,30 @@ class OverlayDrawing {
         for (int i = 0; i < 8; ++i) {
             for (const int axis : {1, 2, 4}) {
                 if ((i & axis) == 0)
-                    line(corner(i), corner(i | axis), selected ? kSelectedColour : kBoxColour, selected ? 2.0f : 1.0f);
+                    line(corner(i), corner(i | axis), selected ? kSelectedColor : kBoxColor,
+                         selected ? 2.0f : 1.0f);
             }
         }
     }
 
-    ImU32 colourOf(std::uint32_t probe) const {
+    ImU32 colorOf(std::uint32_t probe) const {
         const ShownProbes* const baked = session_.probes();
-        if (baked == nullptr || !(baked->info.grid == session_.shown()->loaded.probes) || probe >= baked->probes.size())
+        if (baked == nullptr || !(baked->info.grid == session_.shown()->loaded.probes) ||
+            probe >= baked->probes.size())
             return IM_COL32(235, 235, 235, 200);
         switch (baked->probes[probe].record.state) {
-            case ProbeState::Active: return IM_COL32(90, 220, 120, 220);
-            case ProbeState::Relocated: return IM_COL32(255, 200, 70, 220);
-            case ProbeState::Inactive: return IM_COL32(235, 80, 70, 220);
+            case ProbeState::Active:
+                return IM_COL32(90, 220, 120, 220);
+            case ProbeState::Relocated:
+                return IM_COL32(255, 200, 70, 220);
+            case ProbeState::Inactive:
+                return IM_COL32(235, 80, 70, 220);
         }
         return 0;
     }
 
-    /// As spheres a tenth of a step wide, but never too small to be seen nor so large that they hide the scene.
+    /// As spheres a tenth of a step wide, but never too small to be seen nor so large that they hide the
+    /// scene.
     void drawProbes() {
         const ProbeGrid& grid = session_.shown()->loaded.probes;
         const double radius = 0.05 * std::min({grid.step.x, grid.step.y, grid.step.z});
@@ -92,32 +101,34 @@ class OverlayDrawing {
             return;
         const double units = radius / view_.metresPerUnit(view_.depthOf(place));
         const auto r = static_cast<float>(std::clamp(units, kFarProbeUnits, kNearProbeUnits));
-        list_->AddCircleFilled(at(*point), r, colourOf(index), 12);
+        list_->AddCircleFilled(at(*point), r, colorOf(index), 12);
         list_->AddCircle(at(*point), r, IM_COL32(0, 0, 0, 160), 12);
-        if (session_.selectedProbe == index) list_->AddCircle(at(*point), r + 3.0f, kSelectedColour, 20, 2.0f);
+        if (session_.selectedProbe == index) list_->AddCircle(at(*point), r + 3.0f, kSelectedColor, 20, 2.0f);
     }
 
     void drawGizmo(const Gizmo& gizmo) {
         const auto under = gizmo.handleAt(cursor_);
-        const auto colour = [&](Handle handle, ImU32 usual) { return under == handle ? kSelectedColour : usual; };
+        const auto color = [&](Handle handle, ImU32 usual) {
+            return under == handle ? kSelectedColor : usual;
+        };
         constexpr ImU32 kTurn = IM_COL32(200, 200, 200, 200);
         for (int i = 0; i < 48; ++i) {
             const double step = 2.0 * std::numbers::pi / 48;
-            line(gizmo.circleAt(i * step), gizmo.circleAt((i + 1) * step), colour(Handle::Turn, kTurn), 2.0f);
+            line(gizmo.circleAt(i * step), gizmo.circleAt((i + 1) * step), color(Handle::Turn, kTurn), 2.0f);
         }
-        drawSquare(gizmo, colour(Handle::Ground, IM_COL32(255, 255, 255, 110)));
-        drawArrow(gizmo, Handle::X, colour(Handle::X, IM_COL32(240, 70, 60, 255)));
-        drawArrow(gizmo, Handle::Y, colour(Handle::Y, IM_COL32(90, 220, 80, 255)));
-        drawArrow(gizmo, Handle::Z, colour(Handle::Z, IM_COL32(80, 130, 255, 255)));
+        drawSquare(gizmo, color(Handle::Ground, IM_COL32(255, 255, 255, 110)));
+        drawArrow(gizmo, Handle::X, color(Handle::X, IM_COL32(240, 70, 60, 255)));
+        drawArrow(gizmo, Handle::Y, color(Handle::Y, IM_COL32(90, 220, 80, 255)));
+        drawArrow(gizmo, Handle::Z, color(Handle::Z, IM_COL32(80, 130, 255, 255)));
     }
 
-    void drawArrow(const Gizmo& gizmo, Handle handle, ImU32 colour) {
-        line(gizmo.origin(), gizmo.tipOf(handle), colour, 3.0f);
+    void drawArrow(const Gizmo& gizmo, Handle handle, ImU32 color) {
+        line(gizmo.origin(), gizmo.tipOf(handle), color, 3.0f);
         const auto tip = view_.pointOf(gizmo.tipOf(handle));
-        if (tip) list_->AddCircleFilled(at(*tip), 5.0f, colour, 12);
+        if (tip) list_->AddCircleFilled(at(*tip), 5.0f, color, 12);
     }
 
-    void drawSquare(const Gizmo& gizmo, ImU32 colour) {
+    void drawSquare(const Gizmo& gizmo, ImU32 color) {
         const glm::dvec3 o = gizmo.origin();
         const glm::dvec3 far = gizmo.tipOf(Handle::Ground);
         const std::array corners{o, glm::dvec3(far.x, o.y, o.z), far, glm::dvec3(o.x, o.y, far.z)};
@@ -127,7 +138,7 @@ class OverlayDrawing {
             if (!point) return;
             points[i] = at(*point);
         }
-        list_->AddQuadFilled(points[0], points[1], points[2], points[3], colour);
+        list_->AddQuadFilled(points[0], points[1], points[2], points[3], color);
     }
 
     const Session& session_;
@@ -143,7 +154,7 @@ void drawSelectedMap(const Session& session, const AtlasLayout& maps) {
     const glm::dvec2 scale = session.windowSize / glm::dvec2(session.frames().size());
     const glm::dvec2 from = glm::dvec2(*corner) * scale;
     const glm::dvec2 to = from + static_cast<double>(maps.cell) * scale;
-    ImGui::GetBackgroundDrawList()->AddRect(at(from), at(to), kSelectedColour, 0.0f, ImDrawFlags_None, 2.0f);
+    ImGui::GetBackgroundDrawList()->AddRect(at(from), at(to), kSelectedColor, 0.0f, ImDrawFlags_None, 2.0f);
 }
 
 }  // namespace

@@ -41,7 +41,8 @@ bool beginPanel(const char* title, bool& open, ImVec2 at, ImVec2 size) {
 }
 
 bool slider(const char* label, double& value, double low, double high, const char* format) {
-    return ImGui::SliderScalar(label, ImGuiDataType_Double, &value, &low, &high, format, ImGuiSliderFlags_AlwaysClamp);
+    return ImGui::SliderScalar(label, ImGuiDataType_Double, &value, &low, &high, format,
+                               ImGuiSliderFlags_AlwaysClamp);
 }
 
 bool dragVector(const char* label, glm::dvec3& value, const DragRange& range, SceneEditor& editor) {
@@ -52,8 +53,8 @@ bool dragVector(const char* label, glm::dvec3& value, const DragRange& range, Sc
 }
 
 bool dragNumber(const char* label, double& value, const DragRange& range, SceneEditor& editor) {
-    const bool changed = ImGui::DragScalar(label, ImGuiDataType_Double, &value, range.speed, &range.low, &range.high,
-                                           range.format, ImGuiSliderFlags_AlwaysClamp);
+    const bool changed = ImGui::DragScalar(label, ImGuiDataType_Double, &value, range.speed, &range.low,
+                                           &range.high, range.format, ImGuiSliderFlags_AlwaysClamp);
     endStep(changed, editor);
     return changed;
 }
@@ -66,11 +67,12 @@ bool dragCounts(const char* label, glm::uvec3& value, std::uint32_t high, SceneE
     return changed;
 }
 
-bool editColour(const char* label, glm::dvec3& value, SceneEditor& editor) {
-    glm::vec3 colour(value);
-    const bool changed = ImGui::ColorEdit3(label, &colour.x, ImGuiColorEditFlags_HDR | ImGuiColorEditFlags_Float);
+bool editColor(const char* label, glm::dvec3& value, SceneEditor& editor) {
+    glm::vec3 color(value);
+    const bool changed =
+        ImGui::ColorEdit3(label, &color.x, ImGuiColorEditFlags_HDR | ImGuiColorEditFlags_Float);
     endStep(changed, editor);
-    if (changed) value = glm::max(glm::dvec3(colour), glm::dvec3(0.0));
+    if (changed) value = glm::max(glm::dvec3(color), glm::dvec3(0.0));
     return changed;
 }
 
@@ -84,17 +86,20 @@ bool commandButton(Session& session, const char* label, Command command) {
 
 void commandItem(Session& session, const char* label, Command command, bool enabled, bool checked) {
     const KeyBinding* const binding = bindingOf(command);
-    if (ImGui::MenuItem(label, std::string(binding->keyText).c_str(), checked, enabled)) session.execute(*binding);
+    if (ImGui::MenuItem(label, std::string(binding->keyText).c_str(), checked, enabled))
+        session.execute(*binding);
 }
 
-void drawSmallMap(const char* label, std::uint32_t edge, const std::vector<std::uint32_t>& pixels, float size) {
-    if (edge == 0) return;
+void drawSmallMap(const char* label, std::uint32_t resolution, const std::vector<std::uint32_t>& pixels,
+                  float size) {
+    if (resolution == 0) return;
     ImGui::BeginGroup();
     const ImVec2 corner = ImGui::GetCursorScreenPos();
     ImDrawList* const list = ImGui::GetWindowDrawList();
-    const float step = size / static_cast<float>(edge);
+    const float step = size / static_cast<float>(resolution);
     for (std::uint32_t i = 0; i < pixels.size(); ++i) {
-        const ImVec2 at(corner.x + step * static_cast<float>(i % edge), corner.y + step * static_cast<float>(i / edge));
+        const ImVec2 at(corner.x + step * static_cast<float>(i % resolution),
+                        corner.y + step * static_cast<float>(i / resolution));
         list->AddRectFilled(at, {at.x + step, at.y + step}, pixels[i]);
     }
     ImGui::Dummy({size, size});

@@ -35,20 +35,23 @@ struct DragRange {
     double high = 1e9;
     const char* format = "%.3f";
 };
-/// Right after a widget: when it was left, what the user does next is another step to undo. What `changed` in this very
-/// frame, and is applied after this call, still belongs to the step: in a slow frame that is the whole number with Return.
+/// Right after a widget: when it was left, what the user does next is another step to undo. What `changed` in
+/// this very frame, and is applied after this call, still belongs to the step: in a slow frame that is the
+/// whole number with Return.
 void endStep(bool changed, SceneEditor& editor);
 /// True while the user changes it. The step to undo ends when the field is left.
 bool dragVector(const char* label, glm::dvec3& value, const DragRange& range, SceneEditor& editor);
 bool dragNumber(const char* label, double& value, const DragRange& range, SceneEditor& editor);
 bool dragCounts(const char* label, glm::uvec3& value, std::uint32_t high, SceneEditor& editor);
-bool editColour(const char* label, glm::dvec3& value, SceneEditor& editor);
+bool editColor(const char* label, glm::dvec3& value, SceneEditor& editor);
 
 /// A button or menu item that does what a key does.
 bool commandButton(Session& session, const char* label, Command command);
-void commandItem(Session& session, const char* label, Command command, bool enabled = true, bool checked = false);
+void commandItem(Session& session, const char* label, Command command, bool enabled = true,
+                 bool checked = false);
 
 /// Pixels as a square of the given edge, with a name under it.
-void drawSmallMap(const char* label, std::uint32_t edge, const std::vector<std::uint32_t>& pixels, float size);
+void drawSmallMap(const char* label, std::uint32_t resolution, const std::vector<std::uint32_t>& pixels,
+                  float size);
 
 }  // namespace pfvox::viewer

@@ -20,13 +20,13 @@ namespace pfvox::import::svx {
 enum class ChannelKind : std::uint8_t {
     Density,       ///< DENSITY: 0 empty to max full
     Color,         ///< COLOR-RGB and its other spellings
-    DensityColor,  ///< DENSITY_COLOR of AbFab3D: colour with the density as alpha
-    Red,           ///< RED, GREEN and BLUE of AbFab3D: a colour in three channels
+    DensityColor,  ///< DENSITY_COLOR of AbFab3D: color with the density as alpha
+    Red,           ///< RED, GREEN and BLUE of AbFab3D: a color in three channels
     Green,
     Blue,
-    Material,      ///< MATERIAL: fraction of material `id`
-    Custom,        ///< CUSTOM: meaning unknown
-    Other,         ///< anything else
+    Material,  ///< MATERIAL: fraction of material `id`
+    Custom,    ///< CUSTOM: meaning unknown
+    Other,     ///< anything else
 };
 
 struct Channel {

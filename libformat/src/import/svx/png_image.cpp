@@ -12,7 +12,7 @@ namespace {
 
 /// Deflate makes at most 1032 bytes of one.
 constexpr std::uint64_t kMaxInflation = 1032;
-/// For all chunks but the picture: text and colour profiles are inflated by libspng although nobody asks for
+/// For all chunks but the picture: text and color profiles are inflated by libspng although nobody asks for
 /// them.
 constexpr std::size_t kMaxChunkBytes = 1 << 20;
 constexpr std::size_t kMaxChunkCacheBytes = 4 << 20;

@@ -1,4 +1,4 @@
-// PNG slices of SVX files, through libspng: every bit depth and colour type, interlaced or not.
+// PNG slices of SVX files, through libspng: every bit depth and color type, interlaced or not.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@ namespace pfvox::import::svx {
 struct ScalarImage {
     std::uint32_t bitDepth = 8;         ///< of one sample in the file
     std::uint16_t maximum = 255;        ///< the largest value that bitDepth allows
-    std::vector<std::uint16_t> values;  ///< first component: grey, or red
+    std::vector<std::uint16_t> values;  ///< first component: gray, or red
 };
 
 struct ColorImage {

@@ -6,7 +6,7 @@ namespace pfvox::import::svx {
 
 namespace {
 
-/// What a PNG may weigh beyond its worst-case pixels: filter bytes, headers, text, a colour profile.
+/// What a PNG may weigh beyond its worst-case pixels: filter bytes, headers, text, a color profile.
 constexpr std::uint64_t kPngOverheadBytes = 4 << 20;
 constexpr std::uint64_t kMaxPixelBytes = 8;  // RGBA, 16 bits each
 

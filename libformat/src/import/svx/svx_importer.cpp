@@ -49,10 +49,14 @@ Result<std::vector<std::byte>> readManifestBytes(const svx::ZipArchive& archive,
 /// 0, 1, 2 for channels of red, green, blue.
 std::optional<std::size_t> primaryOf(svx::ChannelKind kind) {
     switch (kind) {
-        case svx::ChannelKind::Red: return 0;
-        case svx::ChannelKind::Green: return 1;
-        case svx::ChannelKind::Blue: return 2;
-        default: return std::nullopt;
+        case svx::ChannelKind::Red:
+            return 0;
+        case svx::ChannelKind::Green:
+            return 1;
+        case svx::ChannelKind::Blue:
+            return 2;
+        default:
+            return std::nullopt;
     }
 }
 
@@ -99,7 +103,7 @@ Result<svx::ChannelPlan> planChannels(const svx::Manifest& manifest, Diagnostics
         const bool densityColor = plan.color != nullptr && plan.color->kind == svx::ChannelKind::DensityColor;
         const bool needed = plan.density == nullptr && !densityColor;
         diagnostics.note("svx-materials-unused",
-                         "colours are kept, material ids are not: a voxel has one material");
+                         "colors are kept, material ids are not: a voxel has one material");
         if (!needed) plan.materials.clear();
     }
     return plan;

@@ -18,7 +18,7 @@ constexpr std::size_t kMaxColors = 65535;
 /// One slice, decoded and decided.
 struct SliceContent {
     std::vector<std::uint8_t> solid;       ///< 1 or 0 for each pixel
-    std::vector<glm::u8vec4> colors;       ///< empty without a colour channel
+    std::vector<glm::u8vec4> colors;       ///< empty without a color channel
     std::vector<MaterialIndex> materials;  ///< empty without material channels
 };
 
@@ -52,7 +52,8 @@ class SliceDecoder {
         PFVOX_TRY(ColorImage, image, reader_.color(*plan_.color, slice));
         content.colors = std::move(image.pixels);
         if (!content.solid.empty()) return {};
-        if (!image.hasAlpha) return plan_.materials.empty() ? failWithoutMatter(plan_.color->type) : Result<void>{};
+        if (!image.hasAlpha)
+            return plan_.materials.empty() ? failWithoutMatter(plan_.color->type) : Result<void>{};
         content.solid.resize(content.colors.size());
         std::ranges::transform(content.colors, content.solid.begin(),
                                [&](glm::u8vec4 color) { return isSolid(color.a / 255.0); });
@@ -61,7 +62,8 @@ class SliceDecoder {
 
     /// Three channels of one component each.
     Result<void> decodePrimaries(std::uint32_t slice, SliceContent& content) {
-        if (content.solid.empty() && plan_.materials.empty()) return failWithoutMatter(plan_.primaries[0]->type);
+        if (content.solid.empty() && plan_.materials.empty())
+            return failWithoutMatter(plan_.primaries[0]->type);
         for (std::size_t c = 0; c < plan_.primaries.size(); ++c) {
             PFVOX_TRY(const ScalarImage, image, reader_.scalar(*plan_.primaries[c], slice));
             content.colors.resize(image.values.size(), glm::u8vec4{0, 0, 0, 255});
@@ -74,10 +76,11 @@ class SliceDecoder {
     }
 
     static Result<void> failWithoutMatter(const std::string& channel) {
-        return fail(ErrorCode::UnsupportedFeature,
-                    fmt::format("channel {} gives colours, but no channel says where matter is: a DENSITY channel, a "
-                                "MATERIAL channel or an alpha channel is needed",
-                                channel));
+        return fail(
+            ErrorCode::UnsupportedFeature,
+            fmt::format("channel {} gives colors, but no channel says where matter is: a DENSITY channel, a "
+                        "MATERIAL channel or an alpha channel is needed",
+                        channel));
     }
 
     /// The largest fraction wins; of equal ones the first channel. Voxels without any get the material after
@@ -110,7 +113,7 @@ class SliceDecoder {
     double threshold_;
 };
 
-/// First of two passes: which colours the solid voxels have.
+/// First of two passes: which colors the solid voxels have.
 Result<void> collectColors(SliceDecoder& decoder, std::uint32_t sliceCount, ColorPalette& palette) {
     for (std::uint32_t slice = 0; slice < sliceCount; ++slice) {
         PFVOX_TRY(const SliceContent, content, decoder.decode(slice));
@@ -183,7 +186,7 @@ Result<void> readVoxels(SliceReader& reader, const ChannelPlan& plan, const Mani
         asset.materials = colorMaterials(*palette);
         if (palette->quantised()) {
             diagnostics.warn("svx-colors-quantised",
-                             fmt::format("{} colours were joined to {}", palette->distinctColors(),
+                             fmt::format("{} colors were joined to {}", palette->distinctColors(),
                                          asset.materials.size()));
         }
     } else {

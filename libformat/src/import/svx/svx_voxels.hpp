@@ -13,7 +13,7 @@
 namespace pfvox::import::svx {
 
 /// The channels that an import uses. Where solid matter is comes from the first of: density; the alpha of the
-/// colour channel; the sum of the material fractions.
+/// color channel; the sum of the material fractions.
 struct ChannelPlan {
     const Channel* density = nullptr;
     const Channel* color = nullptr;
@@ -25,7 +25,7 @@ struct ChannelPlan {
 
 /// Fills `asset.models[0]` and `asset.materials`.
 /// Errors: those of SliceReader; LimitExceeded (maxMemoryBytes, maxRegions); UnsupportedFeature when only
-/// colours without alpha are there.
+/// colors without alpha are there.
 Result<void> readVoxels(SliceReader& reader, const ChannelPlan& plan, const Manifest& manifest,
                         const ImportSettings& settings, const Limits& limits, VoxelAsset& asset,
                         Diagnostics& diagnostics);

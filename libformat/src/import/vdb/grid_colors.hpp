@@ -1,4 +1,4 @@
-// GridColors: a vec3 grid of linear colours as palette materials.
+// GridColors: a vec3 grid of linear colors as palette materials.
 #pragma once
 
 #include <openvdb/Grid.h>
@@ -12,7 +12,7 @@
 
 namespace pfvox::import::vdb {
 
-/// More colours are joined by median cut: a smooth gradient of floats has a different colour in every voxel.
+/// More colors are joined by median cut: a smooth gradient of floats has a different color in every voxel.
 inline constexpr std::size_t kMaxGridColors = 4096;
 
 /// The sRGB byte of a linear value; below 0 and not a number is 0, above 1 is 255.
@@ -25,8 +25,8 @@ struct GridColors {
     std::unique_ptr<const Shader> shader;  ///< shares the tree of the grid
 };
 
-/// Float grids of red, green and blue as one vector grid. What is inactive in all of them becomes their backgrounds.
-/// Precondition: equal transforms.
+/// Float grids of red, green and blue as one vector grid. What is inactive in all of them becomes their
+/// backgrounds. Precondition: equal transforms.
 openvdb::GridBase::Ptr joinChannels(const openvdb::FloatGrid& red, const openvdb::FloatGrid& green,
                                     const openvdb::FloatGrid& blue);
 

@@ -22,8 +22,8 @@ bool isColorName(const std::string& name) {
     return std::ranges::find(kNames, lowerCase(name)) != kNames.end();
 }
 
-/// How programs name the float grids of red, green and blue: Blender's smoke has color_r, vectors that were split into
-/// components have Cd.x or Cd.r.
+/// How programs name the float grids of red, green and blue: Blender's smoke has color_r, vectors that were
+/// split into components have Cd.x or Cd.r.
 constexpr std::array<std::array<std::string_view, 3>, 4> kChannelSuffixes{
     {{"_r", "_g", "_b"}, {".r", ".g", ".b"}, {".x", ".y", ".z"}, {"_x", "_y", "_z"}}};
 
@@ -42,7 +42,7 @@ std::string obstacle(const GridDescriptor& grid) {
                    "grids do";
         case GridKind::Vector:
             if (!isColorName(grid.plainName())) {
-                return nameAndType(grid) + " holds vectors: they are used only as colours, named Cd or color";
+                return nameAndType(grid) + " holds vectors: they are used only as colors, named Cd or color";
             }
             break;
         default:
@@ -61,7 +61,7 @@ bool isFloat(const GridDescriptor& grid) {
     return grid.type == "Tree_float_5_4_3" && obstacle(grid).empty();
 }
 
-/// The three float grids that give colours together, or none.
+/// The three float grids that give colors together, or none.
 std::vector<std::size_t> findChannels(const std::vector<GridDescriptor>& grids) {
     std::map<std::string, std::size_t> floats;
     for (std::size_t i = 0; i < grids.size(); ++i) {
@@ -136,7 +136,7 @@ Result<std::vector<std::size_t>> chooseUsable(const std::vector<GridDescriptor>&
             (kindOf(grids[i]) == GridKind::Vector ? vectors : chosen).push_back(i);
         }
     }
-    // Colours alone still say where something is, and vectors say it best.
+    // Colors alone still say where something is, and vectors say it best.
     if (chosen.empty()) chosen = vectors.empty() ? channels : std::move(vectors);
     if (chosen.empty() && !obstacles.empty()) return fail(ErrorCode::UnsupportedFeature, obstacles.front());
     if (chosen.empty()) return fail(ErrorCode::NothingToConvert, "the file holds no grid");

@@ -134,7 +134,7 @@ class TreeWalker {
         return {};
     }
 
-    /// Nothing where the colours inside the tile differ.
+    /// Nothing where the colors inside the tile differ.
     Result<std::optional<MaterialIndex>> tileMaterial(const openvdb::Coord& corner, int edgeLog2,
                                                       const Value& value) {
         if constexpr (kLabelled) {
@@ -232,7 +232,7 @@ class TreeWalker {
     LabelTable& labels_;
     ModelBudget& budget_;
     VoxelModel& model_;
-    Value lastLabel_{};  ///< neighbours mostly have the same number
+    Value lastLabel_{};  ///< neighbors mostly have the same number
     std::optional<MaterialIndex> lastMaterial_;
 };
 

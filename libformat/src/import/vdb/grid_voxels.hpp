@@ -18,7 +18,7 @@ namespace pfvox::import::vdb {
 /// Materials of the voxels of a leaf node, in OpenVDB's order (x slowest).
 using LeafMaterials = std::array<MaterialIndex, kBrickVoxels>;
 
-/// Where the materials of a model come from when they depend on position: a colour grid.
+/// Where the materials of a model come from when they depend on position: a color grid.
 class Shader {
   public:
     Shader() = default;
@@ -56,7 +56,7 @@ struct FillSettings {
     double threshold = 0.0;  ///< of fog volumes
     UpAxis upAxis = UpAxis::Y;
     std::uint32_t maxMaterials = 0;
-    MaterialIndex plainMaterial = 0;  ///< of grids without colours or numbers
+    MaterialIndex plainMaterial = 0;  ///< of grids without colors or numbers
     const Shader* shader = nullptr;
     const KnownLabels* known = nullptr;
 };

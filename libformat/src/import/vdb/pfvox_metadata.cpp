@@ -15,7 +15,7 @@ constexpr std::size_t kMaxMaterials = 65536;
 
 struct FloatField {
     std::string_view key;
-    float Material::* member;
+    float Material::*member;
 };
 constexpr std::array<FloatField, 8> kFloatFields{{{"metalness", &Material::metalness},
                                                   {"roughness", &Material::roughness},
@@ -26,8 +26,9 @@ constexpr std::array<FloatField, 8> kFloatFields{{{"metalness", &Material::metal
                                                   {"density", &Material::density},
                                                   {"phase", &Material::phase}}};
 
-constexpr std::array kTypes{MaterialType::Diffuse, MaterialType::Metal, MaterialType::Glass, MaterialType::Emit,
-                            MaterialType::Plastic, MaterialType::Blend, MaterialType::Media};
+constexpr std::array kTypes{MaterialType::Diffuse, MaterialType::Metal,   MaterialType::Glass,
+                            MaterialType::Emit,    MaterialType::Plastic, MaterialType::Blend,
+                            MaterialType::Media};
 
 std::string escaped(std::string_view text) {
     std::string out;
@@ -142,8 +143,8 @@ Result<MaterialTable> parseMaterialTable(std::string_view text) {
         std::int64_t label = 0;
         Material material;
         if (!parseLine(line, label, material)) {
-            return fail(ErrorCode::BadValue,
-                        fmt::format("line {} of {} is no material: \"{}\"", number, metadata::kMaterials, line));
+            return fail(ErrorCode::BadValue, fmt::format("line {} of {} is no material: \"{}\"", number,
+                                                         metadata::kMaterials, line));
         }
         table.insert_or_assign(label, std::move(material));
         if (table.size() > kMaxMaterials) {

@@ -22,8 +22,9 @@ Result<void> RestoredMaterials::appendTo(std::vector<Material>& materials, const
         if (isNew) materials.push_back(*entry.material);
         known_[entry.grid].emplace(label, known->second);
         if (materials.size() > limits.maxMaterials) {
-            return fail(ErrorCode::LimitExceeded,
-                        fmt::format("the grids name more than {} materials (maxMaterials)", limits.maxMaterials));
+            return fail(
+                ErrorCode::LimitExceeded,
+                fmt::format("the grids name more than {} materials (maxMaterials)", limits.maxMaterials));
         }
     }
     return {};

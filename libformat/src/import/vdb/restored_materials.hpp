@@ -1,4 +1,5 @@
-// RestoredMaterials: the materials that an export of pfvox wrote into its grids, as materials of the asset again.
+// RestoredMaterials: the materials that an export of pfvox wrote into its grids, as materials of the asset
+// again.
 #pragma once
 
 #include <pfvox/asset.hpp>
@@ -16,9 +17,9 @@ class RestoredMaterials {
 
     bool contains(std::size_t grid) const { return tables_.contains(grid); }
 
-    /// Appends the materials of all tables in the order of their numbers, equal ones once. Grids of several files may be
-    /// in one, so that a number may mean something else in every grid.
-    /// Errors: LimitExceeded (maxMaterials).
+    /// Appends the materials of all tables in the order of their numbers, equal ones once. Grids of several
+    /// files may be in one, so that a number may mean something else in every grid. Errors: LimitExceeded
+    /// (maxMaterials).
     Result<void> appendTo(std::vector<Material>& materials, const Limits& limits);
 
     /// After appendTo(): what the numbers of a grid mean, or null.

@@ -39,8 +39,7 @@ class VdbImport {
           budget_(limits) {}
 
     Result<VoxelAsset> run() {
-        PFVOX_TRY(const auto, selection,
-                  selectGrids(reader_.grids(), settings_.vdb.grids, diagnostics_));
+        PFVOX_TRY(const auto, selection, selectGrids(reader_.grids(), settings_.vdb.grids, diagnostics_));
         asset_.source.format = "vdb";
         asset_.materials.emplace_back();
         PFVOX_CHECK(loadColors(selection.color));
@@ -53,7 +52,7 @@ class VdbImport {
         if (asset_.models.empty()) return fail(ErrorCode::NothingToConvert, emptyReason_);
         if (labels_->size() != 0) {
             diagnostics_.note("vdb-labels",
-                              fmt::format("{} numbers of integer grids became materials with made-up colours",
+                              fmt::format("{} numbers of integer grids became materials with made-up colors",
                                           labels_->size()));
         }
         return std::move(asset_);
@@ -66,29 +65,33 @@ class VdbImport {
         return reader_.read(index);
     }
 
-    /// The vector grid of the colours, made of three where they are so; null where they cannot be used.
+    /// The vector grid of the colors, made of three where they are so; null where they cannot be used.
     Result<openvdb::GridBase::Ptr> readColors(const std::vector<std::size_t>& indices) {
         openvdb::GridPtrVec grids;
         for (const std::size_t index : indices) {
             PFVOX_TRY(auto, grid, read(reader_.treeOwner(index)));
             grids.push_back(std::move(grid));
         }
-        const bool oneTransform = std::ranges::all_of(
-            grids, [&](const openvdb::GridBase::Ptr& grid) { return grid->transform() == grids[0]->transform(); });
+        const bool oneTransform = std::ranges::all_of(grids, [&](const openvdb::GridBase::Ptr& grid) {
+            return grid->transform() == grids[0]->transform();
+        });
         if (!oneTransform) {
-            diagnostics_.warn("vdb-color-transform",
-                              fmt::format("the grids of red, green and blue (\"{}\" and its like) have different "
-                                          "transforms: colours are left out",
-                                          grids[0]->getName()));
+            diagnostics_.warn(
+                "vdb-color-transform",
+                fmt::format("the grids of red, green and blue (\"{}\" and its like) have different "
+                            "transforms: colors are left out",
+                            grids[0]->getName()));
             return openvdb::GridBase::Ptr{};
         }
         openvdb::GridBase::Ptr colors = grids[0];
         if (grids.size() == 3) {
-            const auto channel = [&](std::size_t i) { return openvdb::gridConstPtrCast<openvdb::FloatGrid>(grids[i]); };
+            const auto channel = [&](std::size_t i) {
+                return openvdb::gridConstPtrCast<openvdb::FloatGrid>(grids[i]);
+            };
             colors = joinChannels(*channel(0), *channel(1), *channel(2));
         }
         if (colors->activeVoxelCount() != 0) return colors;
-        diagnostics_.warn("vdb-grid-empty", fmt::format("the colour grid \"{}\" is empty: colours are left out",
+        diagnostics_.warn("vdb-grid-empty", fmt::format("the color grid \"{}\" is empty: colors are left out",
                                                         colors->getName()));
         return openvdb::GridBase::Ptr{};
     }
@@ -119,7 +122,7 @@ class VdbImport {
         if (colors_.distinctColors > colors_.materials.size()) {
             diagnostics_.warn(
                 "vdb-colors-quantised",
-                fmt::format("{} colours of grid \"{}\" were joined to {}", colors_.distinctColors,
+                fmt::format("{} colors of grid \"{}\" were joined to {}", colors_.distinctColors,
                             reader_.grids()[indices[0]].displayName, colors_.materials.size()));
         }
         if (colors_.clampedValues > 0) {
@@ -145,7 +148,8 @@ class VdbImport {
         if (!known->second) return {};
         const GridDescriptor& descriptor = reader_.grids()[index];
         PFVOX_TRY(const Affine, worldFromModel, place(*grid, descriptor));
-        Instance instance{.model = *known->second, .worldFromModel = worldFromModel, .name = descriptor.displayName};
+        Instance instance{
+            .model = *known->second, .worldFromModel = worldFromModel, .name = descriptor.displayName};
         restoreInstance(descriptor, instance);
         asset_.instances.push_back(std::move(instance));
         return {};
@@ -171,11 +175,11 @@ class VdbImport {
         const bool isOwn = descriptor.ownText(metadata::kRole) == metadata::kMaterialRole;
         model.name = isOwn ? std::string(descriptor.ownText(metadata::kModel)) : descriptor.displayName;
         FillSettings fill{.threshold = settings_.vdb.threshold,
-                               .upAxis = settings_.vdb.upAxis,
-                               .maxMaterials = limits_.maxMaterials,
-                               .plainMaterial = kPlainMaterial,
-                               .shader = shaderFor(*grid, descriptor),
-                               .known = restored_.of(owner)};
+                          .upAxis = settings_.vdb.upAxis,
+                          .maxMaterials = limits_.maxMaterials,
+                          .plainMaterial = kPlainMaterial,
+                          .shader = shaderFor(*grid, descriptor),
+                          .known = restored_.of(owner)};
         auto filled = fillModel(*grid, fill, *labels_, budget_, model, diagnostics_);
         if (!filled) {
             Error error = std::move(filled).error();
@@ -196,7 +200,7 @@ class VdbImport {
         if (grid.transform() == colorGrid_->transform()) return colors_.shader.get();
         diagnostics_.warn(
             "vdb-color-transform",
-            fmt::format("grid \"{}\" stays without colours: the colour grid \"{}\" has another transform",
+            fmt::format("grid \"{}\" stays without colors: the color grid \"{}\" has another transform",
                         descriptor.displayName, colorGrid_->getName()));
         return nullptr;
     }

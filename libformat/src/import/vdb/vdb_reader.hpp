@@ -38,7 +38,8 @@ class VdbReader {
     class Stream;
 
     VdbHeader header_;
-    std::unordered_map<std::string, std::size_t> treeOwners_;  ///< grids with a tree of their own, by unique name
+    std::unordered_map<std::string, std::size_t>
+        treeOwners_;  ///< grids with a tree of their own, by unique name
     std::unique_ptr<Stream> stream_;
 };
 

@@ -20,7 +20,7 @@ struct GridInstance {
 };
 
 /// The placement rule of MagicaVoxel, as one exact transform. With the model's pivot c = floor(size / 2),
-/// voxel p of the model becomes world voxel floor(R (p + 1/2 - c) + t), all in VOX axes. Voxel centres are at
+/// voxel p of the model becomes world voxel floor(R (p + 1/2 - c) + t), all in VOX axes. Voxel centers are at
 /// half numbers on both sides and R is a signed permutation, so the floor only takes the half off again and
 /// cubes map onto cubes.
 GridTransform worldFromModel(const GridTransform& voxWorldFromPivot, glm::ivec3 size);

@@ -11,7 +11,7 @@
 
 namespace pfvox::import::vox {
 
-/// What a material chunk gave. The base colour is not in it: that is the palette's.
+/// What a material chunk gave. The base color is not in it: that is the palette's.
 struct MaterialRecord {
     Material material;
     std::set<std::string> unmappedKeys = {};  ///< properties that Material has no place for

@@ -52,8 +52,8 @@ Result<ModelSet> buildModels(const std::vector<ModelRecord>& records, const std:
     }
     reportVoxels(records, reports, &ScatterReport::outside, "vox-voxels-outside",
                  "lie outside SIZE and are dropped", diagnostics);
-    reportVoxels(records, reports, &ScatterReport::colourless, "vox-voxels-without-colour",
-                 "have palette index 0, which is no colour, and are dropped", diagnostics);
+    reportVoxels(records, reports, &ScatterReport::colorless, "vox-voxels-without-color",
+                 "have palette index 0, which is no color, and are dropped", diagnostics);
     reportVoxels(records, reports, &ScatterReport::duplicates, "vox-duplicate-voxels",
                  "lie where a later one does, which replaces them", diagnostics);
     return set;

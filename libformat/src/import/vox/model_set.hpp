@@ -17,7 +17,7 @@ struct ModelSet {
 
 /// Builds every model whose `wanted` is true, in parallel; the result does not depend on the number of
 /// threads. Errors: LimitExceeded (maxMemoryBytes). Diagnostics: vox-voxels-outside,
-/// vox-voxels-without-colour, vox-duplicate-voxels.
+/// vox-voxels-without-color, vox-duplicate-voxels.
 Result<ModelSet> buildModels(const std::vector<ModelRecord>& records, const std::vector<bool>& wanted,
                              const Limits& limits, Diagnostics& diagnostics);
 

@@ -44,7 +44,7 @@ void checkIndexMap(Chunk& chunk, Diagnostics& diagnostics) {
     diagnostics.report(
         {.severity = Severity::Warning,
          .id = "vox-imap-invalid",
-         .message = "chunk IMAP is no permutation of the 256 palette entries; colours do not depend on it",
+         .message = "chunk IMAP is no permutation of the 256 palette entries; colors do not depend on it",
          .offsetBytes = chunk.offsetBytes()});
 }
 

@@ -6,7 +6,7 @@
 
 namespace pfvox::import::vox {
 
-/// Whether these bytes are a SLAB6 model: i32 size of each axis, one byte a voxel, 256 colours of 3 bytes, no
+/// Whether these bytes are a SLAB6 model: i32 size of each axis, one byte a voxel, 256 colors of 3 bytes, no
 /// magic. The sizes must account for every byte.
 bool isSlab6(std::span<const std::byte> bytes);
 

@@ -39,7 +39,7 @@ class VoxFileReader {
         static const std::map<std::string_view, Handler> handlers{
             {"PACK", &VoxFileReader::readPack},      {"SIZE", &VoxFileReader::readSize},
             {"XYZI", &VoxFileReader::readVoxels},    {"TDCZ", &VoxFileReader::refuseTeardown},
-            {"RGBA", &VoxFileReader::readColours},   {"IMAP", &VoxFileReader::readIndexMap},
+            {"RGBA", &VoxFileReader::readColors},    {"IMAP", &VoxFileReader::readIndexMap},
             {"MATL", &VoxFileReader::readMaterial},  {"MATT", &VoxFileReader::readOldMaterial},
             {"nTRN", &VoxFileReader::readSceneNode}, {"nGRP", &VoxFileReader::readSceneNode},
             {"nSHP", &VoxFileReader::readSceneNode}, {"LAYR", &VoxFileReader::readSceneLayer},
@@ -103,7 +103,7 @@ class VoxFileReader {
             "read; load and save it with MagicaVoxel first");
     }
 
-    Result<void> readColours(Chunk& chunk) {
+    Result<void> readColors(Chunk& chunk) {
         warnIfSeen(chunk, "");
         PFVOX_TRY(const Palette, palette, readPalette(chunk));
         file_.palette = palette;
@@ -156,7 +156,7 @@ class VoxFileReader {
         PFVOX_TRY(const std::uint32_t, count, chunk.readCount(4, "the number of notes"));
         for (std::uint32_t row = 0; row < count; ++row) {
             PFVOX_TRY(const std::string_view, text, chunk.readString("a note"));
-            if (!text.empty()) file_.notes.push_back(fmt::format("colour row {}: {}", row, text));
+            if (!text.empty()) file_.notes.push_back(fmt::format("color row {}: {}", row, text));
         }
         return {};
     }

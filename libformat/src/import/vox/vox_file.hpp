@@ -31,7 +31,7 @@ struct VoxFile {
     std::vector<ModelRecord> models;
     SceneGraph graph;
     Palette palette = defaultPalette();
-    std::array<MaterialRecord, kPaletteSize> materials;  ///< by voxel index; base colours not filled in
+    std::array<MaterialRecord, kPaletteSize> materials;  ///< by voxel index; base colors not filled in
     std::vector<Camera> cameras;
     std::vector<std::string> notes;
 };

@@ -46,7 +46,7 @@ void reportUnshownModels(const std::vector<bool>& shown, const ImportSettings& s
                                  kept ? "kept without one" : "left out"));
 }
 
-/// The 255 colours with their materials, in the order of palette indices.
+/// The 255 colors with their materials, in the order of palette indices.
 std::vector<Material> makeMaterials(const VoxFile& file) {
     std::vector<Material> materials;
     for (std::size_t v = 1; v < kPaletteSize; ++v) {

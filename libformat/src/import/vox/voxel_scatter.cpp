@@ -78,7 +78,7 @@ ScatterReport scatterVoxels(const ModelRecord& record, VoxelModel& model) {
             continue;
         }
         if (paletteIndex == 0) {
-            ++report.colourless;
+            ++report.colorless;
             continue;
         }
         // Voxels come in runs, so most of them go to the brick of the one before.

@@ -12,7 +12,7 @@ namespace pfvox::import::vox {
 /// What was found on the way.
 struct ScatterReport {
     std::uint64_t outside = 0;     ///< voxels beyond SIZE, dropped
-    std::uint64_t colourless = 0;  ///< voxels with palette index 0, dropped
+    std::uint64_t colorless = 0;   ///< voxels with palette index 0, dropped
     std::uint64_t duplicates = 0;  ///< voxels that a later one of the same place replaced
     std::array<bool, kPaletteSize> usedIndices{};
 };
