@@ -1,6 +1,7 @@
 // Exposed faces and the list of emitters.
 #include "bake/emitters.hpp"
-#include "bake/exposed_faces.hpp"
+#include <pfvox/octree_walk.hpp>
+
 #include "bake_fixture.hpp"
 
 namespace pfvox::test {
@@ -9,8 +10,7 @@ namespace {
 std::size_t exposedFaces(const OctreeAsset& asset) {
     const std::vector<bool> all(asset.materials.size(), true);
     std::size_t count = 0;
-    bake::forEachExposedFace(asset.models[0], {.wanted = all, .hides = all},
-                             [&](const bake::VoxelFace&) { ++count; });
+    forEachExposedFace(asset.models[0], {.wanted = all, .hides = all}, [&](const VoxelFace&) { ++count; });
     return count;
 }
 

@@ -18,18 +18,19 @@ class ComposeTest : public SessionFixture {
         write("b.pf_vox", box(4, 90));
         writeText(folder / "s.toml", "[[models]]\npath = 'a.pf_vox'\nname = 'first'\n");
     }
-    void draw() { ASSERT_TRUE(session->draw(kSize)); }
+    void draw() { ASSERT_TRUE(session->view.draw(kSize)); }
     double x(std::size_t model) const { return scene().models[model].translateMetres.x; }
-    SceneEditor& editor() { return session->composer.editor; }
+    SceneEditor& editor() { return session->document.composer.editor; }
     glm::dvec2 partsOf(const glm::dvec3& world) {
-        return session->projection().pointOf(world).value_or(glm::dvec2(-1.0)) / session->windowSize;
+        return session->view.projection().pointOf(world).value_or(glm::dvec2(-1.0)) /
+               session->view.windowSize;
     }
 };
 
 TEST_F(ComposeTest, ModelsAreAddedBesideWhatIsThere) {
     start(folder / "s.toml");
     EXPECT_EQ(voxels(), 512u);
-    session->addModels({folder / "b.pf_vox", folder / "a.pf_vox"});
+    session->document.addModels({folder / "b.pf_vox", folder / "a.pf_vox"});
     settle();
     ASSERT_EQ(scene().models.size(), 3u);
     EXPECT_EQ(scene().models[1].path, "b.pf_vox");
@@ -77,59 +78,59 @@ TEST_F(ComposeTest, KeysEditTheSelectedModel) {
     EXPECT_FALSE(editor().isChanged());
     press('G');
     press('B');
-    EXPECT_TRUE(session->settings.showProbeGrid && session->settings.showBounds);
+    EXPECT_TRUE(session->view.settings.showProbeGrid && session->view.settings.showBounds);
 }
 
 TEST_F(ComposeTest, ThePictureFollowsAndLooksAsIfReadFromTheFile) {
     start(folder / "s.toml");
-    session->addModels({folder / "b.pf_vox"});
+    session->document.addModels({folder / "b.pf_vox"});
     settle();
     press(kKeyRight);
     press(kKeyLeft, true);
     EXPECT_TRUE(editor().setSun({.direction = {1, -2, -1}, .irradiance = {2, 1, 1}}));
     settle();
-    session->settings.antiAliasing = false;
+    session->view.settings.antiAliasing = false;
     const ViewCamera camera{.position = {2, 2, 5}, .target = {0.8, 0.4, 0.4}};
-    session->camera.set(camera);
+    session->view.camera.set(camera);
     draw();
-    const Picture edited = session->frames().picture(device()).value();
+    const Picture edited = session->view.frames().picture(device()).value();
     press('S', true);
     EXPECT_FALSE(editor().isChanged());
     start(folder / "s.toml");
-    session->settings.antiAliasing = false;
-    session->camera.set(camera);
+    session->view.settings.antiAliasing = false;
+    session->view.camera.set(camera);
     draw();
-    EXPECT_TRUE(session->frames().picture(device()).value().pixels == edited.pixels);
+    EXPECT_TRUE(session->view.frames().picture(device()).value().pixels == edited.pixels);
 }
 
 TEST_F(ComposeTest, AClickSelectsTheModelAndAHandleDragsIt) {
     start(folder / "s.toml");
-    session->addModels({folder / "b.pf_vox"});
+    session->document.addModels({folder / "b.pf_vox"});
     settle();
-    session->camera.set({.position = {0.6, 1.5, 4}, .target = {0.6, 0.2, 0.4}});
+    session->view.camera.set({.position = {0.6, 1.5, 4}, .target = {0.6, 0.2, 0.4}});
     draw();
-    session->clickAt(partsOf({0.4, 0.4, 0.8}));
-    ASSERT_TRUE(session->pick());
-    EXPECT_EQ(session->pick()->modelIndex, 0u);
+    session->input.clickAt(partsOf({0.4, 0.4, 0.8}));
+    ASSERT_TRUE(session->view.pick());
+    EXPECT_EQ(session->view.pick()->modelIndex, 0u);
     EXPECT_EQ(editor().selected(), 0u);
-    const auto gizmo = session->gizmo();
+    const auto gizmo = session->view.gizmo();
     ASSERT_TRUE(gizmo);
     const glm::dvec3 grip = gizmo->tipOf(Handle::X);
-    EXPECT_FALSE(session->grabAt({0.02, 0.02}));
-    ASSERT_TRUE(session->grabAt(partsOf(grip)));
+    EXPECT_FALSE(session->input.grabAt({0.02, 0.02}));
+    ASSERT_TRUE(session->input.grabAt(partsOf(grip)));
     for (const double by : {0.1, 0.35, 0.25}) {
-        session->drag({.to = partsOf(grip + glm::dvec3(by, 0, 0)), .ended = by == 0.25});
+        session->input.drag({.to = partsOf(grip + glm::dvec3(by, 0, 0)), .ended = by == 0.25});
         session->update(now);
     }
     EXPECT_NEAR(x(0), 0.25, 1e-6);
-    EXPECT_NEAR(session->shown()->loaded.parts[0].worldFromAsset[3].x, 0.25, 1e-6)
+    EXPECT_NEAR(session->document.shown()->loaded.parts[0].worldFromAsset[3].x, 0.25, 1e-6)
         << "the device's scene moved too";
     press('Z', true);
     EXPECT_EQ(x(0), 0.0) << "a drag is one step";
     EXPECT_EQ(editor().selected(), 0u);
     press(kKeyEscape);
     EXPECT_FALSE(editor().selected());
-    EXPECT_FALSE(session->gizmo());
+    EXPECT_FALSE(session->view.gizmo());
 }
 
 TEST_F(ComposeTest, ProbesAreClickedWhereTheyAreDrawn) {
@@ -137,17 +138,17 @@ TEST_F(ComposeTest, ProbesAreClickedWhereTheyAreDrawn) {
     ASSERT_TRUE(editor().setProbes(
         {.position = glm::dvec3(-0.5, 1.2, 0), .stepMetres = glm::dvec3(0.6), .count = glm::uvec3(3, 2, 2)}));
     settle();
-    EXPECT_EQ(session->shown()->loaded.probes.counts, glm::uvec3(3, 2, 2));
-    const glm::dvec2 there = partsOf(session->placeOfProbe(4));
-    session->clickAt(there);
-    EXPECT_FALSE(session->selectedProbe) << "not drawn";
+    EXPECT_EQ(session->document.shown()->loaded.probes.counts, glm::uvec3(3, 2, 2));
+    const glm::dvec2 there = partsOf(session->document.placeOfProbe(4));
+    session->input.clickAt(there);
+    EXPECT_FALSE(session->view.selectedProbe) << "not drawn";
     press('G');
-    session->clickAt(there);
-    EXPECT_EQ(session->selectedProbe, 4u);
-    EXPECT_FALSE(session->pick());
+    session->input.clickAt(there);
+    EXPECT_EQ(session->view.selectedProbe, 4u);
+    EXPECT_FALSE(session->view.pick());
     ASSERT_TRUE(editor().setProbes({.count = glm::uvec3(2)}));
     settle();
-    EXPECT_FALSE(session->selectedProbe) << "another grid";
+    EXPECT_FALSE(session->view.selectedProbe) << "another grid";
 }
 
 TEST_F(ComposeTest, AGridOfTooManyProbesIsToldAndTheSceneStays) {
@@ -160,44 +161,45 @@ TEST_F(ComposeTest, AGridOfTooManyProbesIsToldAndTheSceneStays) {
     settle();
     press('N');
     press(kKeyRight);
-    EXPECT_NEAR(session->shown()->loaded.parts[0].worldFromAsset[3].x, 0.1, 1e-6) << "editing goes on";
+    EXPECT_NEAR(session->document.shown()->loaded.parts[0].worldFromAsset[3].x, 0.1, 1e-6)
+        << "editing goes on";
 }
 
 TEST_F(ComposeTest, DroppedModelsJoinASceneAndOtherwiseAreOpened) {
     start(folder / "s.toml");
-    session->drop({folder / "b.pf_vox"});
+    session->document.drop({folder / "b.pf_vox"});
     settle();
     EXPECT_EQ(scene().models.size(), 2u);
-    EXPECT_EQ(session->shown()->path.file, folder / "s.toml");
+    EXPECT_EQ(session->document.shown()->path.file, folder / "s.toml");
     press('Z', true);
-    session->drop({folder / "b.pf_vox", folder / "s.toml"});
+    session->document.drop({folder / "b.pf_vox", folder / "s.toml"});
     settle();
     EXPECT_EQ(scene().models.size(), 1u) << "a scene is opened";
     start(folder / "a.pf_vox");
-    session->drop({folder / "b.pf_vox"});
+    session->document.drop({folder / "b.pf_vox"});
     settle();
-    EXPECT_EQ(session->shown()->path.file, folder / "b.pf_vox");
+    EXPECT_EQ(session->document.shown()->path.file, folder / "b.pf_vox");
     start();
-    session->drop({folder / "a.pf_vox"});
+    session->document.drop({folder / "a.pf_vox"});
     settle();
-    EXPECT_EQ(session->shown()->path.file, folder / "a.pf_vox");
+    EXPECT_EQ(session->document.shown()->path.file, folder / "a.pf_vox");
 }
 
 TEST_F(ComposeTest, ANewSceneIsBuiltUpAndSavedUnderAName) {
     start();
     press('N', true);
-    ASSERT_NE(session->shown(), nullptr);
-    EXPECT_TRUE(session->shown()->path.file.empty());
-    session->addModels({folder / "a.pf_vox"});
+    ASSERT_NE(session->document.shown(), nullptr);
+    EXPECT_TRUE(session->document.shown()->path.file.empty());
+    session->document.addModels({folder / "a.pf_vox"});
     settle();
     EXPECT_EQ(voxels(), 512u);
     EXPECT_EQ(x(0), 0.0);
     press('S', true);
-    EXPECT_EQ(session->composer.dialog, Dialog::SaveAs) << "it has no name yet";
-    session->composer.dialog = Dialog::None;
-    ASSERT_TRUE(session->composer.saveAs(folder / "made"));
+    EXPECT_EQ(session->document.composer.dialog, Dialog::SaveAs) << "it has no name yet";
+    session->document.composer.dialog = Dialog::None;
+    ASSERT_TRUE(session->document.composer.saveAs(folder / "made"));
     settle();
-    EXPECT_EQ(session->shown()->path.file, folder / "made.toml");
+    EXPECT_EQ(session->document.shown()->path.file, folder / "made.toml");
     EXPECT_FALSE(editor().isChanged());
     EXPECT_THAT(readText(folder / "made.toml"), HasSubstr("path = \"a.pf_vox\""));
     write("a.pf_vox", box(4));
@@ -211,25 +213,25 @@ TEST_F(ComposeTest, UnsavedChangesAreAskedAbout) {
     press('N');
     press(kKeyRight);
     press('Q', true);
-    EXPECT_FALSE(session->wantsToQuit());
-    ASSERT_TRUE(session->composer.isAsking());
-    session->composer.answer(Answer::Cancel);
-    EXPECT_FALSE(session->composer.isAsking());
+    EXPECT_FALSE(session->input.wantsToQuit());
+    ASSERT_TRUE(session->document.composer.isAsking());
+    session->document.composer.answer(Answer::Cancel);
+    EXPECT_FALSE(session->document.composer.isAsking());
     EXPECT_TRUE(editor().isChanged());
-    session->open(folder / "b.pf_vox");
+    session->document.open(folder / "b.pf_vox");
     settle();
-    EXPECT_EQ(session->shown()->path.file, folder / "s.toml") << "not before the answer";
-    session->composer.answer(Answer::Discard);
+    EXPECT_EQ(session->document.shown()->path.file, folder / "s.toml") << "not before the answer";
+    session->document.composer.answer(Answer::Discard);
     settle();
-    EXPECT_EQ(session->shown()->path.file, folder / "b.pf_vox");
+    EXPECT_EQ(session->document.shown()->path.file, folder / "b.pf_vox");
     EXPECT_THAT(readText(folder / "s.toml"), testing::Not(HasSubstr("translateVec")));
-    session->open(folder / "s.toml");
+    session->document.open(folder / "s.toml");
     settle();
     press('N');
     press(kKeyRight);
     press('Q', true);
-    session->composer.answer(Answer::Save);
-    EXPECT_TRUE(session->wantsToQuit());
+    session->document.composer.answer(Answer::Save);
+    EXPECT_TRUE(session->input.wantsToQuit());
     EXPECT_THAT(readText(folder / "s.toml"), HasSubstr("translateVec = [0.1"));
 }
 
@@ -240,9 +242,9 @@ TEST_F(ComposeTest, ASaveThatFailsLosesNothing) {
     press('Q', true);
     std::filesystem::remove(folder / "s.toml");
     std::filesystem::create_directory(folder / "s.toml");  // no file can take its place
-    session->composer.answer(Answer::Save);
-    EXPECT_FALSE(session->wantsToQuit());
-    EXPECT_TRUE(session->composer.isAsking());
+    session->document.composer.answer(Answer::Save);
+    EXPECT_FALSE(session->input.wantsToQuit());
+    EXPECT_TRUE(session->document.composer.isAsking());
     EXPECT_TRUE(editor().isChanged());
     EXPECT_TRUE(log.strip());
 }
@@ -256,8 +258,8 @@ TEST_F(ComposeTest, AnotherProgramsChangeDoesNotTakeOursAway) {
     EXPECT_EQ(labelOf(scene().models[0]), "first");
     EXPECT_THAT(log.strip().value_or(""), HasSubstr("another program"));
     press('R');
-    ASSERT_TRUE(session->composer.isAsking());
-    session->composer.answer(Answer::Discard);
+    ASSERT_TRUE(session->document.composer.isAsking());
+    session->document.composer.answer(Answer::Discard);
     settle();
     EXPECT_EQ(labelOf(scene().models[0]), "theirs");
 }
@@ -277,7 +279,8 @@ TEST_F(ComposeTest, OurOwnSaveIsNotReadAgain) {
 TEST_F(ComposeTest, WhatCannotBeAddedIsToldAndLeftOut) {
     start(folder / "s.toml");
     writeText(folder / "hall.vox", "VOX \x96 and so on, long enough to have a header of some kind ........");
-    session->addModels({folder / "hall.vox", folder / "none.pf_vox", folder / "s.toml", folder / "b.pf_vox"});
+    session->document.addModels(
+        {folder / "hall.vox", folder / "none.pf_vox", folder / "s.toml", folder / "b.pf_vox"});
     settle();
     EXPECT_EQ(scene().models.size(), 2u);
     std::string all;
@@ -305,8 +308,8 @@ TEST_F(ComposeTest, AHiddenModelWhoseFileIsGoneIsToldWhenShown) {
 
 TEST_F(ComposeTest, ThisViewBecomesACamera) {
     start(folder / "s.toml");
-    session->camera.set({.position = {1, 2, 3}, .target = {0, 0, 0}, .fovYDegrees = 33});
-    session->addCamera();
+    session->view.camera.set({.position = {1, 2, 3}, .target = {0, 0, 0}, .fovYDegrees = 33});
+    session->input.addCamera();
     ASSERT_EQ(scene().cameras.size(), 1u);
     EXPECT_EQ(scene().cameras[0].fovYDegrees, 33.0);
     press('Z', true);

@@ -21,10 +21,11 @@ class SessionFilesTest : public SessionFixture {
     }
     std::string stripAfterOpening(const std::string& content) {
         writeText(folder / "bad.pf_vox", content);
-        session->open(folder / "bad.pf_vox");
+        session->document.open(folder / "bad.pf_vox");
         settle();
-        EXPECT_EQ(session->shown()->path.file, folder / "good.pf_vox") << "the last good scene stays";
-        EXPECT_TRUE(session->draw(kSize));
+        EXPECT_EQ(session->document.shown()->path.file, folder / "good.pf_vox")
+            << "the last good scene stays";
+        EXPECT_TRUE(session->view.draw(kSize));
         return log.strip().value_or("");
     }
     void expectMendable() {
@@ -37,7 +38,7 @@ class SessionFilesTest : public SessionFixture {
 };
 
 TEST_F(SessionFilesTest, Missing) {
-    session->open(folder / "nowhere.pf_vox");
+    session->document.open(folder / "nowhere.pf_vox");
     settle();
     EXPECT_THAT(log.strip().value_or(""), HasSubstr("nowhere.pf_vox"));
     EXPECT_EQ(voxels(), 512u);
@@ -75,7 +76,7 @@ TEST_F(SessionFilesTest, Damaged) {
 // A file that grows while it is looked at counts only when it rests; whatever was read in between, the end is
 // right.
 TEST_F(SessionFilesTest, ChangingWhileItIsRead) {
-    session->open(folder / "other.pf_vox");
+    session->document.open(folder / "other.pf_vox");
     settle();
     ASSERT_EQ(voxels(), 64u);
     write("large.pf_vox", demoRoom());
@@ -89,8 +90,8 @@ TEST_F(SessionFilesTest, ChangingWhileItIsRead) {
     });
     for (int i = 0; i < 60; ++i) {
         session->update(now += 0.26);
-        ASSERT_NE(session->shown(), nullptr);
-        ASSERT_TRUE(session->draw(kSize));
+        ASSERT_NE(session->document.shown(), nullptr);
+        ASSERT_TRUE(session->view.draw(kSize));
     }
     writer.join();
     settle();
@@ -103,7 +104,7 @@ TEST_F(SessionFilesTest, AModelOfASceneThatBreaksWhileOneEdits) {
     writeText(
         folder / "s.toml",
         "[[models]]\npath = 'good.pf_vox'\n[[models]]\npath = 'other.pf_vox'\ntranslateVec = [2, 0, 0]\n");
-    session->open(folder / "s.toml");
+    session->document.open(folder / "s.toml");
     settle();
     press('N');
     press(kKeyRight);
@@ -115,16 +116,16 @@ TEST_F(SessionFilesTest, AModelOfASceneThatBreaksWhileOneEdits) {
     EXPECT_NEAR(scene().models[0].translateMetres.x, 0.2, 1e-6) << "edits go on in the document";
     writeText(folder / "other.pf_vox", bytes);
     settle();
-    EXPECT_NEAR(session->shown()->loaded.parts[0].worldFromAsset[3].x, 0.2, 1e-6)
+    EXPECT_NEAR(session->document.shown()->loaded.parts[0].worldFromAsset[3].x, 0.2, 1e-6)
         << "and show when it is mended";
 }
 
 TEST_F(SessionFilesTest, ABrokenSceneFile) {
     writeText(folder / "s.toml", "[[models]]\npath = 'good.pf_vox'\nscaleVec = [0, 1, 1]\n");
-    session->open(folder / "s.toml");
+    session->document.open(folder / "s.toml");
     settle();
     EXPECT_THAT(log.strip().value_or(""), AllOf(HasSubstr("line 3"), HasSubstr("scaleVec")));
-    EXPECT_EQ(session->shown()->path.file, folder / "good.pf_vox");
+    EXPECT_EQ(session->document.shown()->path.file, folder / "good.pf_vox");
     EXPECT_TRUE(scene().models.size() == 1 && scene().models[0].path == "good.pf_vox")
         << "what is edited is what is shown";
 }

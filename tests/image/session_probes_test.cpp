@@ -33,30 +33,30 @@ class SessionProbesTest : public SessionFixture {
 
 TEST_F(SessionProbesTest, TheNextFileHasItsOwn) {
     start({.path = folder.path(), .probes = {.file = kHallProbes}});
-    ASSERT_EQ(session->shown()->path.file.filename(), "hall.toml");
-    ASSERT_NE(session->probes(), nullptr);
+    ASSERT_EQ(session->document.shown()->path.file.filename(), "hall.toml");
+    ASSERT_NE(session->document.probes(), nullptr);
     press(kKeyPageDown);
     settle();
-    ASSERT_EQ(session->shown()->path.file.filename(), "hall.pf_vox");
-    EXPECT_EQ(session->probes(), nullptr) << "those of the scene before are not its own";
-    session->dropProbes();
+    ASSERT_EQ(session->document.shown()->path.file.filename(), "hall.pf_vox");
+    EXPECT_EQ(session->document.probes(), nullptr) << "those of the scene before are not its own";
+    session->document.dropProbes();
     fs::copy_file(kHallProbes, folder / "hall.pf_probe");
     press(kKeyPageUp);
     settle();
-    EXPECT_NE(session->probes(), nullptr) << "dropped were those of another file";
+    EXPECT_NE(session->document.probes(), nullptr) << "dropped were those of another file";
 }
 
 TEST_F(SessionProbesTest, ANewSceneHasNone) {
     start({.path = folder / "hall.toml", .probes = {.file = kHallProbes}});
-    ASSERT_NE(session->probes(), nullptr);
+    ASSERT_NE(session->document.probes(), nullptr);
     press('N', true);
-    session->addModels({folder / "hall.pf_vox"});
+    session->document.addModels({folder / "hall.pf_vox"});
     settle();
     ASSERT_EQ(scene().models.size(), 1u);
     write("hall.pf_vox", box(8));  // read again, with the probes of what is shown
     settle();
     EXPECT_EQ(voxels(), 512u);
-    EXPECT_EQ(session->probes(), nullptr);
+    EXPECT_EQ(session->document.probes(), nullptr);
     press('9');
     EXPECT_THAT(log.strip().value_or(""), HasSubstr("save the scene"));
     EXPECT_THAT(allMessages(), Not(HasSubstr("no .pf_probe")));
@@ -66,11 +66,11 @@ TEST_F(SessionProbesTest, ASceneThatIsSavedBesideProbesTakesThem) {
     fs::copy_file(folder / "hall.toml", folder / "other.toml");
     fs::copy_file(kHallProbes, folder / "hall.pf_probe");
     start(folder / "other.toml");
-    EXPECT_EQ(session->probes(), nullptr);
-    ASSERT_TRUE(session->composer.saveAs(folder / "hall.toml"));
+    EXPECT_EQ(session->document.probes(), nullptr);
+    ASSERT_TRUE(session->document.composer.saveAs(folder / "hall.toml"));
     settle();
-    ASSERT_NE(session->probes(), nullptr);
-    EXPECT_TRUE(session->probes()->ofThisScene);
+    ASSERT_NE(session->document.probes(), nullptr);
+    EXPECT_TRUE(session->document.probes()->ofThisScene);
 }
 
 TEST_F(SessionProbesTest, WithoutAnotherFileThereIsNoNextOne) {
@@ -79,8 +79,8 @@ TEST_F(SessionProbesTest, WithoutAnotherFileThereIsNoNextOne) {
     press(kKeyRight);
     press(kKeyPageDown);
     settle();
-    EXPECT_FALSE(session->composer.isAsking()) << "about changes that nothing endangers";
-    EXPECT_TRUE(session->composer.editor.canUndo());
+    EXPECT_FALSE(session->document.composer.isAsking()) << "about changes that nothing endangers";
+    EXPECT_TRUE(session->document.composer.editor.canUndo());
     EXPECT_THAT(log.messages().back().text, HasSubstr("no other file"));
     start();
     press(kKeyPageDown);
@@ -95,34 +95,36 @@ TEST_F(SessionProbesTest, AClickOnAMapSelectsItsProbe) {
     start({.path = folder / "hall.toml", .mode = ViewMode::AtlasDepth});
     press('N');  // a model that would have handles
     drawn();
-    const std::optional<AtlasLayout> maps = session->shownAtlas();
+    const std::optional<AtlasLayout> maps = session->view.shownAtlas();
     ASSERT_TRUE(maps);
     EXPECT_EQ(maps->cell, 32u);
     EXPECT_EQ(maps->columns, 5u);
     EXPECT_EQ(maps->count, 15u);
     EXPECT_EQ(maps->pages, 2u);
     EXPECT_EQ(maps->cornerOf(7), glm::uvec2(64, 32));
-    const auto click = [&](double x, double y) { session->clickAt(glm::dvec2(x, y) / glm::dvec2(kSize)); };
+    const auto click = [&](double x, double y) {
+        session->input.clickAt(glm::dvec2(x, y) / glm::dvec2(kSize));
+    };
     click(70.0, 40.0);
-    EXPECT_EQ(session->selectedProbe, 7u);
-    EXPECT_FALSE(session->pick()) << "there is no scene under the cursor";
-    EXPECT_FALSE(session->gizmo());
-    session->atlas.page = 1;
+    EXPECT_EQ(session->view.selectedProbe, 7u);
+    EXPECT_FALSE(session->view.pick()) << "there is no scene under the cursor";
+    EXPECT_FALSE(session->view.gizmo());
+    session->view.atlas.page = 1;
     drawn();
     click(1.0, 1.0);
-    EXPECT_EQ(session->selectedProbe, 15u);
+    EXPECT_EQ(session->view.selectedProbe, 15u);
     click(158.0, 90.0);
-    EXPECT_EQ(session->selectedProbe, 15u) << "no map there";
-    EXPECT_FALSE(session->shownAtlas()->cornerOf(7)) << "on the other page";
-    session->atlas.probe = 3;
+    EXPECT_EQ(session->view.selectedProbe, 15u) << "no map there";
+    EXPECT_FALSE(session->view.shownAtlas()->cornerOf(7)) << "on the other page";
+    session->view.atlas.probe = 3;
     drawn();
-    EXPECT_EQ(session->shownAtlas()->pages, 1u);
+    EXPECT_EQ(session->view.shownAtlas()->pages, 1u);
     click(80.0, 60.0);
-    EXPECT_EQ(session->selectedProbe, 3u);
+    EXPECT_EQ(session->view.selectedProbe, 3u);
     press('2');
     drawn();
-    EXPECT_FALSE(session->shownAtlas());
-    EXPECT_TRUE(session->gizmo());
+    EXPECT_FALSE(session->view.shownAtlas());
+    EXPECT_TRUE(session->view.gizmo());
 }
 
 /// Files whose name begins with "slow" are read when they are let go.
@@ -153,18 +155,18 @@ TEST_F(SessionProbesTest, AnotherFileIsOpenedWithoutWaitingForTheOneBefore) {
     write("quick.pf_vox", box(8));
     SlowReader reader;
     start({.path = folder / "quick.pf_vox", .read = std::ref(reader)});
-    session->open(folder / "slow.pf_vox");
+    session->document.open(folder / "slow.pf_vox");
     const auto begun = std::chrono::steady_clock::now();
-    session->open(folder / "quick.pf_vox");
+    session->document.open(folder / "quick.pf_vox");
     settle();
     EXPECT_EQ(voxels(), 512u);
-    session->open(folder / "slow.pf_vox");
+    session->document.open(folder / "slow.pf_vox");
     press('N', true);
-    EXPECT_TRUE(session->shown()->path.file.empty()) << "a new scene";
+    EXPECT_TRUE(session->document.shown()->path.file.empty()) << "a new scene";
     EXPECT_LT(std::chrono::steady_clock::now() - begun, std::chrono::seconds(8));
     reader.release();
     settle();
-    EXPECT_TRUE(session->shown()->path.file.empty()) << "what comes too late is not shown";
+    EXPECT_TRUE(session->document.shown()->path.file.empty()) << "what comes too late is not shown";
     session.reset();  // before its reader
 }
 

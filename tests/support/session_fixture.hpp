@@ -42,10 +42,10 @@ class SessionFixture : public PictureTest {
         auto made = viewer::Session::create(device(), what, std::move(memory), log);
         ASSERT_TRUE(made) << describe(made.error());
         session = *std::move(made);
-        session->windowSize = glm::dvec2(kSize);
+        session->view.windowSize = glm::dvec2(kSize);
         settle();
     }
-    bool isBusy() const { return session->isLoading() || session->composer.isReading(); }
+    bool isBusy() const { return session->document.isLoading() || session->document.composer.isReading(); }
     /// Lets a second pass, as far as the session can tell, and waits for what it reads.
     void settle() {
         for (int i = 0; i < 4; ++i) session->update(now += 0.26);
@@ -59,17 +59,17 @@ class SessionFixture : public PictureTest {
     void press(viewer::Key key, bool control = false, bool shift = false) {
         const viewer::KeyBinding* const binding = viewer::bindingOf(key, control, shift);
         ASSERT_NE(binding, nullptr);
-        session->execute(*binding);
+        session->input.execute(*binding);
         session->update(now);
     }
     viewer::Picture drawn() {
-        const Result<void> done = session->draw(kSize);
+        const Result<void> done = session->view.draw(kSize);
         EXPECT_TRUE(done) << describe(done.error());
-        return session->frames().picture(device()).value();
+        return session->view.frames().picture(device()).value();
     }
-    std::uint64_t voxels() const { return session->shown()->scene.statistics().voxels; }
-    std::uint32_t instances() const { return session->shown()->scene.statistics().instances; }
-    const Scene& scene() const { return session->composer.editor.scene(); }
+    std::uint64_t voxels() const { return session->document.shown()->scene.statistics().voxels; }
+    std::uint32_t instances() const { return session->document.shown()->scene.statistics().instances; }
+    const Scene& scene() const { return session->document.composer.editor.scene(); }
 
     TempFolder folder;
     viewer::MessageLog log;

@@ -1,7 +1,9 @@
 // pfview: shows PF_VOX files.
 #include <cstdio>
+#include <cstdlib>
 #include <pfvox/error.hpp>
 
+#include "background.hpp"
 #include "common/program.hpp"
 #include "common/reporter.hpp"
 #include "headless.hpp"
@@ -58,7 +60,7 @@ tools::ExitCode runWith(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    return tools::runProgram([&] {
+    const int code = tools::runProgram([&] {
         const auto parsed = parseOptions(argc, argv);
         if (const auto* early = std::get_if<EarlyExit>(&parsed)) {
             std::fputs(early->text.c_str(), early->exitCode == 0 ? stdout : stderr);
@@ -66,4 +68,8 @@ int main(int argc, char** argv) {
         }
         return runWith(std::get<Options>(parsed));
     });
+    // Whatever is still being read was for a window that is closed: nothing waits for it, and nothing that it
+    // uses is taken down under it.
+    if (backgroundThreads() > 0) std::quick_exit(code);
+    return code;
 }

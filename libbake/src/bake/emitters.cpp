@@ -2,8 +2,8 @@
 
 #include <cmath>
 #include <numeric>
+#include <pfvox/octree_walk.hpp>
 
-#include "bake/exposed_faces.hpp"
 #include "shared/color.glsl.h"
 #include "shared/scene.glsl.h"
 

@@ -1,8 +1,8 @@
 #include "bake/probe_placement.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
+#include <pfvox/octree_walk.hpp>
 
 namespace pfvox::bake {
 
@@ -40,23 +40,17 @@ class Search {
     }
 
     void node(const OctreeRegion& region, std::uint32_t index, glm::ivec3 corner, std::uint32_t level) {
-        const std::uint32_t d = region.tree.nodes[index];
-        std::uint32_t child = node::innerMask(d) != 0 ? region.tree.firstChild(index) : 0;
-        for (std::uint32_t rest = node::validMask(d); rest != 0; rest &= rest - 1) {
-            const auto slot = static_cast<std::uint32_t>(std::countr_zero(rest));
-            const bool leaf = (node::leafMask(d) >> slot & 1u) != 0;
-            const std::uint32_t below = leaf ? 0 : child++;
-            const glm::ivec3 at =
-                corner + (glm::ivec3(slot & 1u, slot >> 1 & 1u, slot >> 2) << static_cast<int>(level));
+        forEachChild(region.tree, index, [&](const NodeChild& child) {
+            const glm::ivec3 at = corner + (cornerOfSlot(child.slot) << static_cast<int>(level));
             const glm::dvec3 low(at);
             const glm::dvec3 high = low + std::ldexp(1.0, static_cast<int>(level));
-            if (isFar(low, high)) continue;
-            if (leaf) {
+            if (isFar(low, high)) return;
+            if (child.isLeaf) {
                 best_ = std::min(best_, glm::length(linear_ * gap(low, high)));
             } else {
-                node(region, below, at, level - 1);
+                node(region, child.index, at, level - 1);
             }
-        }
+        });
     }
 
     glm::dmat3 linear_;

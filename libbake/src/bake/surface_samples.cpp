@@ -6,8 +6,7 @@
 #include <array>
 #include <numeric>
 #include <optional>
-
-#include "bake/exposed_faces.hpp"
+#include <pfvox/octree_walk.hpp>
 
 namespace pfvox::bake {
 

@@ -3,6 +3,7 @@
 #include <array>
 #include <optional>
 #include <pfvox/assert.hpp>
+#include <pfvox/octree_walk.hpp>
 
 namespace pfvox::gpu::detail {
 
@@ -10,12 +11,7 @@ namespace {
 
 using shared::WideNode;
 
-constexpr std::uint32_t kNone = 0xffffffffu;
 constexpr std::uint64_t kAllCells = ~std::uint64_t{0};
-
-std::uint32_t countBelow(std::uint32_t mask, std::uint32_t slot) {
-    return static_cast<std::uint32_t>(std::popcount(mask & ((1u << slot) - 1)));
-}
 
 /// Child masks spread over the wide cells of slot 0; the other slots' are these, shifted.
 constexpr std::array<std::uint64_t, 256> makeSpread() {
@@ -36,7 +32,7 @@ constexpr std::array<std::uint8_t, 64> makeCells() {
 }
 constexpr std::array<std::uint8_t, 64> kCells = makeCells();
 
-/// Values are palette indices throughout; kNone = not known yet, it stands further down.
+/// Values are palette indices throughout; kNoValue = not known yet, it stands further down.
 class RegionWidener {
   public:
     RegionWidener(const OctreeRegion& region, const WidenSettings& settings, WidePiece& out)
@@ -48,11 +44,12 @@ class RegionWidener {
 
     WideRoot run() {
         const std::uint32_t depth = region_.tree.depth;
-        if (depth % 2 == 0) return node({0, kNone}, depth);
+        if (depth % 2 == 0) return node({0, kNoValue}, depth);
         // A level above the root, of which only the first child exists.
-        if (depth == 1) return brick([&](Voxels& voxels) { addVoxels({0, kNone}, 0, voxels); }, std::nullopt);
+        if (depth == 1)
+            return brick([&](Voxels& voxels) { addVoxels({0, kNoValue}, 0, voxels); }, std::nullopt);
         Cells cells;
-        addChildren({0, kNone}, 0, cells);
+        addChildren({0, kNoValue}, 0, cells);
         return inner(cells, depth - 1, std::nullopt);
     }
 
@@ -60,7 +57,7 @@ class RegionWidener {
     /// An octree node, and the value that is hoisted above it.
     struct Source {
         std::uint32_t index = 0;
-        std::uint32_t value = kNone;
+        std::uint32_t value = kNoValue;
     };
     struct Cells {
         std::uint64_t inner = 0;
@@ -72,18 +69,6 @@ class RegionWidener {
         std::array<std::uint16_t, 64> values;
     };
 
-    std::uint32_t valueOf(Source source, std::uint32_t slot) const {
-        if (source.value != kNone) return source.value;
-        const std::uint32_t lookup = region_.lookup[source.index];
-        if ((lookup >> slot & 1u) == 0) return kNone;
-        return region_.value((lookup >> 8) + countBelow(lookup & 0xffu, slot));
-    }
-
-    Source childOf(Source source, std::uint32_t slot) const {
-        const std::uint32_t inner = node::innerMask(region_.tree.nodes[source.index]);
-        return {region_.tree.firstChild(source.index) + countBelow(inner, slot), valueOf(source, slot)};
-    }
-
     glm::uvec2 lodOf(std::optional<std::uint32_t> index) const {
         if (!settings_.lods || !index) return {0, 0};
         return {region_.lod.colors[*index], out_.palette[region_.lod.materials[*index]]};
@@ -94,37 +79,28 @@ class RegionWidener {
     void addVoxels(Source source, std::uint32_t slot, Voxels& voxels) const {
         const std::uint32_t valid = node::validMask(region_.tree.nodes[source.index]);
         voxels.mask |= kSpread[valid] << wideCell(slot, 0);
-        for (std::uint32_t rest = valid; rest != 0; rest &= rest - 1) {
-            const auto sub = static_cast<std::uint32_t>(std::countr_zero(rest));
-            voxels.values[kCells[8 * slot + sub]] = static_cast<std::uint16_t>(valueOf(source, sub));
-        }
+        forEachChild(region_, source.index, source.value, [&](const NodeChild& child, std::uint32_t value) {
+            voxels.values[kCells[8 * slot + child.slot]] = static_cast<std::uint16_t>(value);
+        });
     }
 
     void addVoxelsOfNode(Source source, Voxels& voxels) const {
-        const std::uint32_t d = region_.tree.nodes[source.index];
-        for (std::uint32_t rest = node::validMask(d); rest != 0; rest &= rest - 1) {
-            const auto slot = static_cast<std::uint32_t>(std::countr_zero(rest));
-            if ((node::leafMask(d) >> slot & 1u) == 0) {
-                addVoxels(childOf(source, slot), slot, voxels);
-                continue;
-            }
-            voxels.mask |= kSpread[0xff] << wideCell(slot, 0);
-            const auto value = static_cast<std::uint16_t>(valueOf(source, slot));
-            for (std::uint32_t sub = 0; sub < 8; ++sub) voxels.values[kCells[8 * slot + sub]] = value;
-        }
+        forEachChild(region_, source.index, source.value, [&](const NodeChild& child, std::uint32_t value) {
+            if (!child.isLeaf) return addVoxels({child.index, value}, child.slot, voxels);
+            voxels.mask |= kSpread[0xff] << wideCell(child.slot, 0);
+            for (std::uint32_t sub = 0; sub < 8; ++sub)
+                voxels.values[kCells[8 * child.slot + sub]] = static_cast<std::uint16_t>(value);
+        });
     }
 
     /// The masks alone, for what has one value.
     std::uint64_t maskOf(std::uint32_t index) const {
-        const std::uint32_t d = region_.tree.nodes[index];
         std::uint64_t mask = 0;
-        std::uint32_t child = node::innerMask(d) != 0 ? region_.tree.firstChild(index) : 0;
-        for (std::uint32_t rest = node::validMask(d); rest != 0; rest &= rest - 1) {
-            const auto slot = static_cast<std::uint32_t>(std::countr_zero(rest));
-            const bool leaf = (node::leafMask(d) >> slot & 1u) != 0;
-            const std::uint32_t valid = leaf ? 0xffu : node::validMask(region_.tree.nodes[child++]);
-            mask |= kSpread[valid] << wideCell(slot, 0);
-        }
+        forEachChild(region_.tree, index, [&](const NodeChild& child) {
+            const std::uint32_t valid =
+                child.isLeaf ? 0xffu : node::validMask(region_.tree.nodes[child.index]);
+            mask |= kSpread[valid] << wideCell(child.slot, 0);
+        });
         return mask;
     }
 
@@ -161,29 +137,21 @@ class RegionWidener {
         const std::uint32_t shift = wideCell(slot, 0);
         cells.leaves |= kSpread[node::leafMask(d)] << shift;
         cells.inner |= kSpread[node::innerMask(d)] << shift;
-        for (std::uint32_t rest = node::validMask(d); rest != 0; rest &= rest - 1) {
-            const auto sub = static_cast<std::uint32_t>(std::countr_zero(rest));
-            const bool leaf = (node::leafMask(d) >> sub & 1u) != 0;
-            cells.at[kCells[8 * slot + sub]] = leaf ? Source{0, valueOf(source, sub)} : childOf(source, sub);
-        }
+        forEachChild(region_, source.index, source.value, [&](const NodeChild& child, std::uint32_t value) {
+            cells.at[kCells[8 * slot + child.slot]] = {child.index, value};
+        });
     }
 
     void addCellsOfNode(Source source, Cells& cells) const {
-        const std::uint32_t d = region_.tree.nodes[source.index];
-        for (std::uint32_t rest = node::validMask(d); rest != 0; rest &= rest - 1) {
-            const auto slot = static_cast<std::uint32_t>(std::countr_zero(rest));
-            if ((node::leafMask(d) >> slot & 1u) == 0) {
-                addChildren(childOf(source, slot), slot, cells);
-                continue;
-            }
-            cells.leaves |= kSpread[0xff] << wideCell(slot, 0);
-            const Source leaf{0, valueOf(source, slot)};
-            for (std::uint32_t sub = 0; sub < 8; ++sub) cells.at[kCells[8 * slot + sub]] = leaf;
-        }
+        forEachChild(region_, source.index, source.value, [&](const NodeChild& child, std::uint32_t value) {
+            if (!child.isLeaf) return addChildren({child.index, value}, child.slot, cells);
+            cells.leaves |= kSpread[0xff] << wideCell(child.slot, 0);
+            for (std::uint32_t sub = 0; sub < 8; ++sub) cells.at[kCells[8 * child.slot + sub]] = {0, value};
+        });
     }
 
     WideRoot solid(std::uint32_t value) const {
-        PFVOX_ASSERT(value != kNone);
+        PFVOX_ASSERT(value != kNoValue);
         const std::uint32_t material = out_.palette[value];
         WideNode made = innerNode(kAllCells, material);
         made.kind = shared::kWideSolid;
@@ -215,7 +183,7 @@ class RegionWidener {
             addCellsOfNode(source, cells);
             return inner(cells, level - 2, source.index);
         }
-        if (source.value == kNone)
+        if (source.value == kNoValue)
             return brick([&](Voxels& voxels) { addVoxelsOfNode(source, voxels); }, source.index);
         WideNode made = innerNode(maskOf(source.index), out_.palette[source.value]);
         made.kind = shared::kWideUniform;

@@ -6,6 +6,7 @@
 #include <array>
 #include <bit>
 #include <pfvox/assert.hpp>
+#include <pfvox/octree_walk.hpp>
 #include <span>
 
 #include "scene/wide_region.hpp"
@@ -66,13 +67,10 @@ class TopWidener {
     }
 
     Cell childOf(std::uint32_t index, std::uint32_t slot) const {
-        const std::uint32_t d = model_.topTree.nodes[index];
-        const std::uint32_t below = (1u << slot) - 1;
-        const auto count = [](std::uint32_t mask) { return static_cast<std::uint32_t>(std::popcount(mask)); };
-        if ((node::validMask(d) >> slot & 1u) == 0) return {};
-        if ((node::leafMask(d) >> slot & 1u) != 0)
-            return {CellKind::Region, model_.topFirstRegion[index] + count(node::leafMask(d) & below)};
-        return {CellKind::Inner, model_.topTree.firstChild(index) + count(node::innerMask(d) & below)};
+        const std::optional<NodeChild> child = childAt(model_.topTree, index, slot);
+        if (!child) return {};
+        if (child->isLeaf) return {CellKind::Region, model_.topFirstRegion[index] + child->index};
+        return {CellKind::Inner, child->index};
     }
 
     void addChildren(std::uint32_t index, std::uint32_t slot, std::array<Cell, 64>& cells) const {

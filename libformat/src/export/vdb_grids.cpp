@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
+#include <pfvox/octree_walk.hpp>
 #include "import/vdb/pfvox_metadata.hpp"
-#include "octree/leaves.hpp"
 #include "shared/color.glsl.h"
 
 namespace pfvox::vdb_export {
@@ -74,9 +74,8 @@ Result<void> fillMaterials(const OctreeModel& model, const Limits& limits, openv
     }
     TreeWriter writer(tree);
     for (const OctreeRegion& region : model.regions) {
-        if (region.tree.nodes.empty()) continue;
-        forEachLeaf(region, [&](glm::ivec3 corner, std::uint32_t edgeLog2, MaterialIndex material) {
-            writer.write(region.originVoxels + corner, edgeLog2, labelOfMaterial(material));
+        forEachLeaf(region, [&](const Leaf& leaf) {
+            writer.write(leaf.corner, leaf.edgeLog2, labelOfMaterial(leaf.material));
         });
         materials.insert(region.palette.begin(), region.palette.end());
         if (memoryBytes + memoryOf(tree) > limits.maxMemoryBytes) {

@@ -7,6 +7,7 @@
 #include <bit>
 #include <cmath>
 #include <pfvox/assert.hpp>
+#include <pfvox/octree_walk.hpp>
 
 #include "octree/lod_measure.hpp"
 #include "shared/color.glsl.h"
@@ -64,7 +65,8 @@ class RegionWalk {
         for (Histogram& h : histograms_) h.reset(region.palette.size());
         region.lod.colors.resize(region.tree.nodes.size());
         region.lod.materials.resize(region.tree.nodes.size());
-        visit({.index = 0, .morton = mortonEncode(glm::uvec3{corner}), .edgeLog2 = region.tree.depth}, 0);
+        visit({.index = 0, .morton = mortonEncode(glm::uvec3{corner}), .edgeLog2 = region.tree.depth},
+              kNoValue);
     }
 
   private:
@@ -82,24 +84,18 @@ class RegionWalk {
         Histogram& faces = histograms_[node.edgeLog2];
         faces.clear();
         if (node.edgeLog2 > kBrickEdgeLog2) shadow(node.edgeLog2).clear();
-        const std::uint32_t descriptor = region_->tree.nodes[node.index];
-        const std::uint32_t lookup = region_->lookup[node.index];
-        std::uint32_t ownValue = lookup >> 8;
-        std::uint32_t child = node::innerMask(descriptor) != 0 ? region_->tree.firstChild(node.index) : 0;
-        for (std::uint32_t rest = node::validMask(descriptor); rest != 0; rest &= rest - 1) {
-            const auto slot = static_cast<std::uint32_t>(std::countr_zero(rest));
-            const std::uint32_t value = ((lookup >> slot) & 1u) != 0 ? region_->value(ownValue++) : inherited;
-            const std::uint32_t below = node.edgeLog2 - 1;
-            const std::uint32_t morton = node.morton + (slot << (3 * below));
-            if (((node::leafMask(descriptor) >> slot) & 1u) != 0) {
+        const std::uint32_t below = node.edgeLog2 - 1;
+        forEachChild(*region_, node.index, inherited, [&](const NodeChild& child, std::uint32_t value) {
+            const std::uint32_t morton = node.morton + (child.slot << (3 * below));
+            if (child.isLeaf) {
                 faces.add(value, facesOfLeaf(morton, below, value));
-                if (below >= kBrickEdgeLog2) shadow(node.edgeLog2).addSolid(slot);
-                continue;
+                if (below >= kBrickEdgeLog2) shadow(node.edgeLog2).addSolid(child.slot);
+                return;
             }
-            visit({.index = child++, .morton = morton, .edgeLog2 = below}, value);
+            visit({.index = child.index, .morton = morton, .edgeLog2 = below}, value);
             faces.add(histograms_[below]);
-            if (below >= kBrickEdgeLog2) shadow(node.edgeLog2).add(slot, shadow(below));
-        }
+            if (below >= kBrickEdgeLog2) shadow(node.edgeLog2).add(child.slot, shadow(below));
+        });
         region_->lod.colors[node.index] = meanColor(faces) | (coverage(node) << 24);
         region_->lod.materials[node.index] = dominantMaterial(faces);
     }

@@ -1,8 +1,5 @@
 #include <bit>
-#include <pfvox/assert.hpp>
-#include <pfvox/octree.hpp>
-
-#include "octree/leaves.hpp"
+#include <pfvox/octree_walk.hpp>
 
 namespace pfvox {
 
@@ -19,31 +16,23 @@ std::optional<std::uint32_t> regionIndexAt(const OctreeModel& model, glm::i64vec
     if (model.topTree.nodes.empty()) return 0;
     std::uint32_t index = 0;
     for (std::uint32_t level = model.topTree.depth; level-- > 0;) {
-        const std::uint32_t d = model.topTree.nodes[index];
-        const std::uint32_t slot = slotOf(local, level + kRegionEdgeLog2);
-        if (((node::validMask(d) >> slot) & 1u) == 0) return std::nullopt;
-        if (((node::leafMask(d) >> slot) & 1u) != 0) {
-            return model.topFirstRegion[index] + countBelow(node::leafMask(d), slot);
-        }
-        index = model.topTree.firstChild(index) + countBelow(node::innerMask(d), slot);
+        const auto child = childAt(model.topTree, index, slotOf(local, level + kRegionEdgeLog2));
+        if (!child) return std::nullopt;
+        if (child->isLeaf) return model.topFirstRegion[index] + child->index;
+        index = child->index;
     }
     return std::nullopt;
 }
 
 std::optional<MaterialIndex> materialInRegion(const OctreeRegion& region, glm::i64vec3 local) {
     std::uint32_t index = 0;
-    std::optional<std::uint32_t> value;  // of the nearest ancestor slot that carries one
+    std::uint32_t value = kNoValue;
     for (std::uint32_t level = region.tree.depth; level-- > 0;) {
-        const std::uint32_t d = region.tree.nodes[index];
-        const std::uint32_t lookup = region.lookup[index];
-        const std::uint32_t slot = slotOf(local, level);
-        if (((node::validMask(d) >> slot) & 1u) == 0) return std::nullopt;
-        if (((lookup >> slot) & 1u) != 0) value = (lookup >> 8) + countBelow(lookup & 0xffu, slot);
-        if (((node::leafMask(d) >> slot) & 1u) != 0) {
-            PFVOX_ASSERT(value.has_value());
-            return region.palette[region.value(*value)];
-        }
-        index = region.tree.firstChild(index) + countBelow(node::innerMask(d), slot);
+        const auto child = childAt(region.tree, index, slotOf(local, level));
+        if (!child) return std::nullopt;
+        value = childValue(region, index, child->slot, value);
+        if (child->isLeaf) return region.palette[value];
+        index = child->index;
     }
     return std::nullopt;
 }
@@ -85,18 +74,17 @@ VoxelModel toVoxelModel(const OctreeModel& model) {
     VoxelModel voxels;
     voxels.name = model.name;
     for (const OctreeRegion& region : model.regions) {
-        forEachLeaf(region, [&](glm::ivec3 corner, std::uint32_t edgeLog2, MaterialIndex material) {
-            const glm::ivec3 at = region.originVoxels + corner;
-            const bool alignedTile =
-                edgeLog2 >= kBrickEdgeLog2 && ((at.x | at.y | at.z) & ((1 << edgeLog2) - 1)) == 0;
+        forEachLeaf(region, [&](const Leaf& leaf) {
+            const glm::ivec3 at = leaf.corner;
+            const int n = leaf.edge();
+            const bool alignedTile = leaf.edgeLog2 >= kBrickEdgeLog2 && ((at.x | at.y | at.z) & (n - 1)) == 0;
             if (alignedTile) {
-                voxels.fillTile(at, static_cast<int>(edgeLog2), material);
+                voxels.fillTile(at, static_cast<int>(leaf.edgeLog2), leaf.material);
                 return;
             }
-            const int n = 1 << edgeLog2;
             for (int z = 0; z < n; ++z)
                 for (int y = 0; y < n; ++y)
-                    for (int x = 0; x < n; ++x) voxels.set(at + glm::ivec3{x, y, z}, material);
+                    for (int x = 0; x < n; ++x) voxels.set(at + glm::ivec3{x, y, z}, leaf.material);
         });
     }
     return voxels;
@@ -114,9 +102,9 @@ OctreeStatistics statistics(const OctreeModel& model, std::size_t materialCount)
         s.farPointers += region.tree.farTable.size();
         s.values += region.valueCount();
         s.gpuBytes += 8 * region.tree.nodes.size() + 4 * region.tree.farTable.size() + region.values.size();
-        forEachLeaf(region, [&](glm::ivec3, std::uint32_t edgeLog2, MaterialIndex material) {
+        forEachLeaf(region, [&](const Leaf& leaf) {
             ++s.leaves;
-            s.voxelsOfMaterial[material] += std::uint64_t{1} << (3 * edgeLog2);
+            s.voxelsOfMaterial[leaf.material] += std::uint64_t{1} << (3 * leaf.edgeLog2);
         });
     }
     return s;

@@ -1,6 +1,5 @@
 #include "compose/composer.hpp"
 
-#include <chrono>
 #include <utility>
 
 namespace pfvox::viewer {
@@ -40,11 +39,10 @@ void Composer::addModels(const std::vector<fs::path>& files) {
 }
 
 void Composer::read(std::vector<fs::path> files, bool add) {
-    MessageLog* const log = log_;
-    reading_ = std::async(std::launch::async, [files = std::move(files), add, log] {
+    reading_ = Background<std::vector<ReadModel>>([files = std::move(files), add](Diagnostics& said) {
         std::vector<ReadModel> models;
         for (const fs::path& file : files)
-            models.push_back({.file = file, .asset = readModel(file, *log), .add = add});
+            models.push_back({.file = file, .asset = readModel(file, said), .add = add});
         return models;
     });
 }
@@ -62,8 +60,9 @@ void Composer::insert(const fs::path& file, const OctreeAsset& asset) {
 }
 
 void Composer::takeRead() {
-    if (!reading_.valid() || reading_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
-    for (ReadModel& model : reading_.get()) {
+    std::optional<std::vector<ReadModel>> read = reading_.take(*log_);
+    if (!read) return;
+    for (ReadModel& model : *read) {
         if (!model.asset) {
             log_->addError(describe(model.asset.error()));
             if (!model.add) failed_ = editor.revision();
@@ -76,7 +75,7 @@ void Composer::takeRead() {
 
 std::optional<LoadedScene> Composer::update() {
     takeRead();
-    if (reading_.valid()) return std::nullopt;
+    if (reading_.isAtWork()) return std::nullopt;
     while (!toAdd_.empty()) {
         const fs::path file = toAdd_.front();
         toAdd_.pop_front();

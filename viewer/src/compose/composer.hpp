@@ -5,9 +5,9 @@
 
 #include <deque>
 #include <functional>
-#include <future>
 #include <utility>
 
+#include "background.hpp"
 #include "compose/model_shelf.hpp"
 #include "message_log.hpp"
 
@@ -39,7 +39,7 @@ class Composer {
     void removeSelected();
     /// Files of models have changed: all are read again.
     void readAgain();
-    bool isReading() const { return reading_.valid() || !toAdd_.empty(); }
+    bool isReading() const { return reading_.isAtWork() || !toAdd_.empty(); }
 
     /// Takes over what has been read, and gives the scene when it is no longer the one given last. A model
     /// that cannot be read is told once; the scene then stays as it was.
@@ -48,6 +48,8 @@ class Composer {
     /// Does it, at once or when the question about unsaved changes has been answered.
     void leave(std::function<void()> action);
     bool isAsking() const { return static_cast<bool>(asked_); }
+    /// Whether the user is asked for something, or is about to be.
+    bool waits() const { return dialog != Dialog::None || isAsking(); }
     void answer(Answer answer);
     /// Asks for a name when the scene has none yet. True when it has been written.
     bool save();
@@ -71,7 +73,7 @@ class Composer {
 
     MessageLog* log_;
     ModelShelf shelf_;
-    std::future<std::vector<ReadModel>> reading_;
+    Background<std::vector<ReadModel>> reading_;
     std::deque<std::filesystem::path> toAdd_;
     std::optional<std::uint64_t> given_;   ///< revision of the scene that update() gave last
     std::optional<std::uint64_t> failed_;  ///< revision with a model that cannot be read

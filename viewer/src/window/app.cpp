@@ -42,16 +42,17 @@ Result<App> openWindow(const gpu::Device& device, Interaction& interaction, glm:
 }
 
 std::string titleOf(const Session& session) {
-    const std::string name = nameOf(session);
+    const std::string name = nameOf(session.document);
     return name.empty() ? "pfview" : name + " - pfview";
 }
 
 void handleInput(App& app, Interaction& interaction, Session& session, double seconds) {
-    session.windowSize = glm::dvec2(app.window->size());
-    session.drop(app.window->takeDropped());
-    for (const KeyBinding& binding : interaction.takeCommands()) session.execute(binding);
-    if (const std::optional<glm::dvec2> click = interaction.takeClick()) session.clickAt(*click);
-    if (const std::optional<Drag> drag = interaction.takeDrag()) session.drag(*drag);
+    session.view.windowSize = glm::dvec2(app.window->size());
+    session.document.drop(app.window->takeDropped());
+    for (const KeyBinding& binding : interaction.takeCommands()) session.input.execute(binding);
+    if (session.document.composer.waits()) interaction.release();
+    if (const std::optional<glm::dvec2> click = interaction.takeClick()) session.input.clickAt(*click);
+    if (const std::optional<Drag> drag = interaction.takeDrag()) session.input.drag(*drag);
     interaction.advance(std::min(seconds, kLongestStepSeconds));
 }
 
@@ -60,11 +61,11 @@ Result<void> runLoop(App& app, Interaction& interaction, Session& session) {
     double last = 0.0;
     Panels panels;
     int busyFrames = 0;  // that are still to be shown without waiting: the overlay settles after an event
-    interaction.grabs = [&](glm::dvec2 parts) { return session.grabAt(parts); };
-    while (!session.wantsToQuit()) {
-        if (app.window->takeCloseRequest()) session.quit();
+    interaction.grabs = [&](glm::dvec2 parts) { return session.input.grabAt(parts); };
+    while (!session.input.wantsToQuit()) {
+        if (app.window->takeCloseRequest()) session.input.quit();
         const bool busy =
-            busyFrames > 0 || interaction.isMoving() || session.needsFrame(app.window->pixels());
+            busyFrames > 0 || interaction.isMoving() || session.view.needsFrame(app.window->pixels());
         const Clock::time_point polled = Clock::now();
         const bool shown = app.window->pixels().x != 0;
         app.window->pollEvents(busy && shown ? 0.0 : kIdleSeconds);
@@ -77,10 +78,11 @@ Result<void> runLoop(App& app, Interaction& interaction, Session& session) {
         last = now.count();
         PFVOX_CHECK(app.presenter->finish());
         session.update(now.count());
-        PFVOX_CHECK(session.draw(app.window->pixels()));
+        PFVOX_CHECK(session.view.draw(app.window->pixels()));
         app.window->setTitle(titleOf(session));
         app.overlay->build([&] { panels.draw(session); });
-        const ShownPixels pixels{.buffer = session.frames().pixels(), .size = session.frames().size()};
+        const ShownPixels pixels{.buffer = session.view.frames().pixels(),
+                                 .size = session.view.frames().size()};
         PFVOX_CHECK(app.presenter->show(app.window->pixels(), pixels,
                                         [&](VkCommandBuffer commands) { app.overlay->draw(commands); }));
     }
@@ -116,14 +118,14 @@ Result<void> runWindow(const Options& options, Diagnostics& diagnostics) {
                              .probes = options.probes,
                              .atlas = options.picture.atlas};
     PFVOX_TRY(const std::unique_ptr<Session>, session, Session::create(device, start, memory, log));
-    Interaction interaction(session->camera);
+    Interaction interaction(session->view.camera);
     const glm::uvec2 size = options.sizeGiven
                                 ? glm::uvec2(options.picture.width, options.picture.height)
                                 : glm::uvec2(memory.settings.windowWidth, memory.settings.windowHeight);
     {
         PFVOX_TRY(App, app, openWindow(device, interaction, size, folders));
         PFVOX_CHECK(runLoop(app, interaction, *session));
-        Memory kept = session->memory();
+        Memory kept = session->view.memory();
         const glm::uvec2 last = app.window->size();
         if (last.x >= 64 && last.y >= 64) {
             kept.settings.windowWidth = last.x;

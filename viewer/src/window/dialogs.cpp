@@ -25,28 +25,28 @@ FileDialog::Request requestOf(Dialog dialog) {
     }
 }
 
-fs::path folderOf(const Session& session) {
-    const fs::path folder = session.composer.editor.folder();
+fs::path folderOf(const Document& document) {
+    const fs::path folder = document.composer.editor.folder();
     return folder.empty() ? fs::path(".") : folder;
 }
 
-std::string nameToBeginWith(const Session& session, Dialog dialog) {
+std::string nameToBeginWith(const Document& document, Dialog dialog) {
     if (dialog != Dialog::SaveAs) return {};
-    const fs::path& file = session.composer.editor.file();
+    const fs::path& file = document.composer.editor.file();
     return file.empty() ? "scene.toml" : file.filename().string();
 }
 
-void doWith(Session& session, Dialog dialog, const fs::path& file) {
+void doWith(Document& document, Dialog dialog, const fs::path& file) {
     switch (dialog) {
         case Dialog::Open:
-            return session.open(file);
+            return document.open(file);
         case Dialog::AddModel:
-            return session.addModels({file});
+            return document.addModels({file});
         case Dialog::SaveAs:
-            session.composer.saveAs(file);
+            document.composer.saveAs(file);
             return;
         case Dialog::LoadProbes:
-            return session.loadProbes(file);
+            return document.loadProbes(file);
         case Dialog::None:
             return;
     }
@@ -54,30 +54,30 @@ void doWith(Session& session, Dialog dialog, const fs::path& file) {
 
 }  // namespace
 
-void Panels::drawDialogs(Session& session) {
-    Dialog& wanted = session.composer.dialog;
-    if (wanted == Dialog::None) return drawLeaveQuestion(session);
+void Panels::drawDialogs(Document& document) {
+    Dialog& wanted = document.composer.dialog;
+    if (wanted == Dialog::None) return drawLeaveQuestion(document.composer);
     if (!dialogShown_ || *dialogShown_ != wanted) {
-        fileDialog_.begin(folderOf(session), nameToBeginWith(session, wanted));
+        fileDialog_.begin(folderOf(document), nameToBeginWith(document, wanted));
         dialogShown_ = wanted;
     }
     const FileDialog::State state = fileDialog_.draw(requestOf(wanted));
     if (state == FileDialog::State::Open) return;
     const Dialog done = std::exchange(wanted, Dialog::None);
     dialogShown_.reset();
-    if (state == FileDialog::State::Chosen) doWith(session, done, fileDialog_.chosen());
+    if (state == FileDialog::State::Chosen) doWith(document, done, fileDialog_.chosen());
 }
 
-void drawLeaveQuestion(Session& session) {
+void drawLeaveQuestion(Composer& composer) {
     constexpr const char* kTitle = "Unsaved changes";
-    if (!session.composer.isAsking()) return;
+    if (!composer.isAsking()) return;
     const ImVec2 window = ImGui::GetIO().DisplaySize;
     if (!ImGui::IsPopupOpen(kTitle)) ImGui::OpenPopup(kTitle);
     ImGui::SetNextWindowPos({0.5f * window.x, 0.5f * window.y}, ImGuiCond_Appearing, {0.5f, 0.5f});
     if (!ImGui::BeginPopupModal(kTitle, nullptr,
                                 ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings))
         return;
-    const fs::path& file = session.composer.editor.file();
+    const fs::path& file = composer.editor.file();
     text(fmt::format("Save the changes to {}?", file.empty() ? "the new scene" : file.filename().string()));
     const auto pressed = [](ImGuiKey key) { return ImGui::IsKeyPressed(ImGui::GetKeyIndex(key), false); };
     std::optional<Answer> answer;
@@ -89,7 +89,7 @@ void drawLeaveQuestion(Session& session) {
     if (ImGui::Button("Cancel (Esc)") || pressed(ImGuiKey_Escape)) answer = Answer::Cancel;
     if (answer) ImGui::CloseCurrentPopup();
     ImGui::EndPopup();
-    if (answer) session.composer.answer(*answer);
+    if (answer) composer.answer(*answer);
 }
 
 }  // namespace pfvox::viewer

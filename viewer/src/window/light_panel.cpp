@@ -11,8 +11,8 @@ namespace pfvox::viewer {
 
 namespace {
 
-void drawSun(Session& session) {
-    SceneEditor& editor = session.composer.editor;
+void drawSun(Composer& composer) {
+    SceneEditor& editor = composer.editor;
     Sun sun = editor.scene().sun;
     // As two angles: where the sun stands. Its length says nothing.
     const glm::dvec3 towards = -glm::normalize(sun.direction);
@@ -26,7 +26,7 @@ void drawSun(Session& session) {
         const double a = glm::radians(azimuth);
         const double h = glm::radians(height);
         sun.direction = -glm::dvec3(std::cos(h) * std::sin(a), std::sin(h), std::cos(h) * std::cos(a));
-        session.composer.tell(editor.setSun(sun, "direction"));
+        composer.tell(editor.setSun(sun, "direction"));
     }
     // Strength apart from the color: the largest channel.
     double strength = std::max({sun.irradiance.r, sun.irradiance.g, sun.irradiance.b});
@@ -36,20 +36,20 @@ void drawSun(Session& session) {
         dragNumber("sun strength", strength, {.speed = 0.02f, .low = 0.0, .high = 1e6}, editor);
     if (tinted || scaled) {
         sun.irradiance = strength * color;
-        session.composer.tell(editor.setSun(sun, tinted ? "color" : "strength"));
+        composer.tell(editor.setSun(sun, tinted ? "color" : "strength"));
     }
 }
 
 }  // namespace
 
-void drawSunAndSky(Session& session) {
-    SceneEditor& editor = session.composer.editor;
-    drawSun(session);
+void drawSunAndSky(Composer& composer) {
+    SceneEditor& editor = composer.editor;
+    drawSun(composer);
     Sky sky = editor.scene().sky;
     const bool zenith = editColor("zenith", sky.zenith, editor);
     const bool horizon = editColor("horizon", sky.horizon, editor);
     const bool ground = editColor("ground", sky.ground, editor);
-    if (zenith || horizon || ground) session.composer.tell(editor.setSky(sky, "sky"));
+    if (zenith || horizon || ground) composer.tell(editor.setSky(sky, "sky"));
 }
 
 void Panels::drawRendering(Session& session) {
@@ -57,37 +57,37 @@ void Panels::drawRendering(Session& session) {
     if (beginPanel("Rendering", renderingOpen_, {kMargin, std::max(470.0f, window.y - 250.0f)},
                    {kPanelWidth, 242.0f})) {
         ImGui::PushItemWidth(-96.0f);
-        if (ImGui::BeginCombo("view", std::string(toString(session.mode)).c_str())) {
+        if (ImGui::BeginCombo("view", std::string(toString(session.view.mode)).c_str())) {
             for (const ViewEntry& view : viewModes()) {
                 const bool chosen =
-                    ImGui::Selectable(std::string(view.name).c_str(), view.mode == session.mode);
-                if (chosen) session.execute(*bindingOf(Command::ShowView, static_cast<int>(view.mode)));
+                    ImGui::Selectable(std::string(view.name).c_str(), view.mode == session.view.mode);
+                if (chosen) session.input.execute(*bindingOf(Command::ShowView, static_cast<int>(view.mode)));
             }
             ImGui::EndCombo();
         }
-        if (session.shown() != nullptr &&
+        if (session.document.shown() != nullptr &&
             ImGui::CollapsingHeader("sun and sky", ImGuiTreeNodeFlags_DefaultOpen))
-            drawSunAndSky(session);
-        if (session.shown() != nullptr && session.probes() == nullptr)
+            drawSunAndSky(session.document.composer);
+        if (session.document.shown() != nullptr && session.document.probes() == nullptr)
             note(
                 "No probes: indirect light is an approximation from what is near by. probe-bake computes "
                 "it.");
         if (ImGui::CollapsingHeader("picture", ImGuiTreeNodeFlags_DefaultOpen)) {
-            slider("exposure", session.settings.exposureStops, -8.0, 8.0, "%.1f stops");
-            if (ImGui::BeginCombo("tone map", std::string(toString(session.settings.toneMap)).c_str())) {
+            slider("exposure", session.view.settings.exposureStops, -8.0, 8.0, "%.1f stops");
+            if (ImGui::BeginCombo("tone map", std::string(toString(session.view.settings.toneMap)).c_str())) {
                 for (const ToneMapEntry& map : toneMaps()) {
                     if (ImGui::Selectable(std::string(map.name).c_str(),
-                                          map.toneMap == session.settings.toneMap))
-                        session.settings.toneMap = map.toneMap;
+                                          map.toneMap == session.view.settings.toneMap))
+                        session.view.settings.toneMap = map.toneMap;
                 }
                 ImGui::EndCombo();
             }
-            slider("detail", session.settings.lodPixels, 0.0, 16.0, "%.1f pixels");
-            slider("resolution", session.settings.renderScale, 0.25, 1.0, "%.2f");
-            Settings& settings = session.settings;
-            ImGui::Checkbox("ground",
-                            session.showsSingleModel() ? &settings.modelGround : &settings.sceneGround);
-            ImGui::Checkbox("anti-aliasing over frames", &session.settings.antiAliasing);
+            slider("detail", session.view.settings.lodPixels, 0.0, 16.0, "%.1f pixels");
+            slider("resolution", session.view.settings.renderScale, 0.25, 1.0, "%.2f");
+            Settings& settings = session.view.settings;
+            ImGui::Checkbox("ground", session.document.showsSingleModel() ? &settings.modelGround
+                                                                          : &settings.sceneGround);
+            ImGui::Checkbox("anti-aliasing over frames", &session.view.settings.antiAliasing);
         }
         ImGui::PopItemWidth();
     }

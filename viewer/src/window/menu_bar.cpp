@@ -10,54 +10,57 @@ namespace pfvox::viewer {
 namespace {
 
 void drawFileMenu(Session& session) {
-    const bool shown = session.shown() != nullptr;
-    commandItem(session, "New scene", Command::NewScene);
-    commandItem(session, "Open ...", Command::Open);
-    commandItem(session, "Add model ...", Command::AddModel);
+    const bool shown = session.document.shown() != nullptr;
+    commandItem(session.input, "New scene", Command::NewScene);
+    commandItem(session.input, "Open ...", Command::Open);
+    commandItem(session.input, "Add model ...", Command::AddModel);
     if (ImGui::MenuItem("Load probes ...", nullptr, false, shown))
-        session.composer.dialog = Dialog::LoadProbes;
+        session.document.composer.dialog = Dialog::LoadProbes;
     ImGui::Separator();
-    commandItem(session, "Save", Command::Save, shown);
-    commandItem(session, "Save as ...", Command::SaveAs, shown);
-    commandItem(session, "Read again", Command::Reload, shown);
-    commandItem(session, "Next file", Command::NextFile, shown);
-    commandItem(session, "Previous file", Command::PreviousFile, shown);
-    commandItem(session, "Screenshot", Command::Screenshot, shown);
+    commandItem(session.input, "Save", Command::Save, shown);
+    commandItem(session.input, "Save as ...", Command::SaveAs, shown);
+    commandItem(session.input, "Read again", Command::Reload, shown);
+    commandItem(session.input, "Next file", Command::NextFile, shown);
+    commandItem(session.input, "Previous file", Command::PreviousFile, shown);
+    commandItem(session.input, "Screenshot", Command::Screenshot, shown);
     ImGui::Separator();
-    commandItem(session, "Quit", Command::Quit);
+    commandItem(session.input, "Quit", Command::Quit);
 }
 
 void drawEditMenu(Session& session) {
-    SceneEditor& editor = session.composer.editor;
+    SceneEditor& editor = session.document.composer.editor;
     const auto named = [](const char* verb, std::string_view what) {
         return what.empty() ? std::string(verb) : fmt::format("{} {}", verb, what);
     };
-    commandItem(session, named("Undo", editor.undoText()).c_str(), Command::Undo, editor.canUndo());
-    commandItem(session, named("Redo", editor.redoText()).c_str(), Command::Redo, editor.canRedo());
+    commandItem(session.input, named("Undo", editor.undoText()).c_str(), Command::Undo, editor.canUndo());
+    commandItem(session.input, named("Redo", editor.redoText()).c_str(), Command::Redo, editor.canRedo());
     ImGui::Separator();
     const bool selected = editor.selected().has_value();
-    commandItem(session, "Duplicate", Command::Duplicate, selected);
-    commandItem(session, "Remove", Command::Remove, selected);
-    commandItem(session, "Select next", Command::SelectNext, !editor.scene().models.empty());
+    commandItem(session.input, "Duplicate", Command::Duplicate, selected);
+    commandItem(session.input, "Remove", Command::Remove, selected);
+    commandItem(session.input, "Select next", Command::SelectNext, !editor.scene().models.empty());
     if (ImGui::MenuItem("Select nothing", "Esc", false, selected)) editor.select(std::nullopt);
-    if (ImGui::MenuItem("Camera from this view", nullptr, false, session.shown() != nullptr))
-        session.addCamera();
+    if (ImGui::MenuItem("Camera from this view", nullptr, false, session.document.shown() != nullptr))
+        session.input.addCamera();
 }
 
 void drawViewMenu(Session& session) {
-    commandItem(session, "Frame everything", Command::FrameAll);
-    commandItem(session, "Frame selected", Command::FrameSelected,
-                session.composer.editor.selected().has_value());
-    commandItem(session, "Fly", Command::ToggleCameraMode, true, session.camera.mode == CameraMode::Fly);
-    commandItem(session, "Next camera", Command::NextCamera);
+    commandItem(session.input, "Frame everything", Command::FrameAll);
+    commandItem(session.input, "Frame selected", Command::FrameSelected,
+                session.document.composer.editor.selected().has_value());
+    commandItem(session.input, "Fly", Command::ToggleCameraMode, true,
+                session.view.camera.mode == CameraMode::Fly);
+    commandItem(session.input, "Next camera", Command::NextCamera);
     ImGui::Separator();
-    commandItem(session, "Probe grid", Command::ToggleProbeGrid, true, session.settings.showProbeGrid);
-    commandItem(session, "Boxes of models", Command::ToggleBounds, true, session.settings.showBounds);
+    commandItem(session.input, "Probe grid", Command::ToggleProbeGrid, true,
+                session.view.settings.showProbeGrid);
+    commandItem(session.input, "Boxes of models", Command::ToggleBounds, true,
+                session.view.settings.showBounds);
     ImGui::Separator();
     for (const ViewEntry& view : viewModes()) {
         const bool chosen = ImGui::MenuItem(std::string(view.name).c_str(), std::string(view.keyText).c_str(),
-                                            session.mode == view.mode);
-        if (chosen) session.execute(*bindingOf(Command::ShowView, static_cast<int>(view.mode)));
+                                            session.view.mode == view.mode);
+        if (chosen) session.input.execute(*bindingOf(Command::ShowView, static_cast<int>(view.mode)));
     }
 }
 
@@ -83,11 +86,11 @@ void Panels::drawMenuBar(Session& session) {
         ImGui::MenuItem("Statistics", nullptr, &statisticsOpen_);
         ImGui::MenuItem("Probes", nullptr, &probesOpen_);
         ImGui::MenuItem("Log", nullptr, &logOpen_);
-        commandItem(session, "Hide all", Command::ToggleWindows);
+        commandItem(session.input, "Hide all", Command::ToggleWindows);
         ImGui::EndMenu();
     }
     if (ImGui::BeginMenu("Help")) {
-        commandItem(session, "Keys", Command::ToggleHelp, true, session.showHelp);
+        commandItem(session.input, "Keys", Command::ToggleHelp, true, session.view.showHelp);
         ImGui::EndMenu();
     }
     ImGui::EndMainMenuBar();

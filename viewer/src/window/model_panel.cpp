@@ -20,8 +20,8 @@ ScaleKind scaleKindOf(const SceneModel& model) {
     return model.cubeEdgeMetres ? ScaleKind::Cube : model.metresPerVoxel ? ScaleKind::Voxel : ScaleKind::File;
 }
 
-const PlacedAsset* partOf(const Session& session, std::size_t model) {
-    for (const PlacedAsset& part : session.shown()->loaded.parts) {
+const PlacedAsset* partOf(const Document& document, std::size_t model) {
+    for (const PlacedAsset& part : document.shown()->loaded.parts) {
         if (part.model == model) return &part;
     }
     return nullptr;
@@ -40,23 +40,23 @@ SceneModel withScaleKind(SceneModel model, ScaleKind kind, const OctreeAsset& as
     return model;
 }
 
-void drawScale(Session& session, std::size_t index, const SceneModel& now) {
-    SceneEditor& editor = session.composer.editor;
-    const PlacedAsset* const part = partOf(session, index);
+void drawScale(Document& document, std::size_t index, const SceneModel& now) {
+    SceneEditor& editor = document.composer.editor;
+    const PlacedAsset* const part = partOf(document, index);
     SceneModel model = now;
     int kind = static_cast<int>(scaleKindOf(model));
     if (ImGui::Combo("scale by", &kind, "the file's voxel size\0metres per voxel\0edges of the cube\0") &&
         part)
-        session.composer.tell(
+        document.composer.tell(
             editor.setModel(index, withScaleKind(model, static_cast<ScaleKind>(kind), *part->asset)));
     if (model.metresPerVoxel && dragNumber("m / voxel", *model.metresPerVoxel, kVoxelSize, editor))
-        session.composer.tell(editor.setModel(index, model, "scale"));
+        document.composer.tell(editor.setModel(index, model, "scale"));
     if (model.cubeEdgeMetres && dragVector("edges (m)", *model.cubeEdgeMetres, {.speed = 0.02f}, editor))
-        session.composer.tell(editor.setModel(index, model, "scale"));
+        document.composer.tell(editor.setModel(index, model, "scale"));
 }
 
-void drawCounts(const Session& session, std::size_t index) {
-    const PlacedAsset* const part = partOf(session, index);
+void drawCounts(const Document& document, std::size_t index) {
+    const PlacedAsset* const part = partOf(document, index);
     if (part == nullptr) return note("hidden: not in memory");
     const WorldBounds box = boundsOf(*part->asset, part->worldFromAsset);
     const glm::dvec3 size = box.empty() ? glm::dvec3(0.0) : box.max - box.min;
@@ -66,21 +66,21 @@ void drawCounts(const Session& session, std::size_t index) {
 
 }  // namespace
 
-void drawModelList(Session& session) {
-    SceneEditor& editor = session.composer.editor;
-    commandButton(session, "Add ...", Command::AddModel);
+void drawModelList(Document& document, Input& input) {
+    SceneEditor& editor = document.composer.editor;
+    commandButton(input, "Add ...", Command::AddModel);
     ImGui::SameLine();
     ImGui::BeginDisabled(!editor.selected());
-    commandButton(session, "Duplicate", Command::Duplicate);
+    commandButton(input, "Duplicate", Command::Duplicate);
     ImGui::SameLine();
-    commandButton(session, "Remove", Command::Remove);
+    commandButton(input, "Remove", Command::Remove);
     ImGui::EndDisabled();
     if (ImGui::BeginChild("models", {0.0f, 96.0f}, true)) {
         for (std::size_t i = 0; i < editor.scene().models.size(); ++i) {
             SceneModel model = editor.scene().models[i];
             ImGui::PushID(static_cast<int>(i));
             if (ImGui::Checkbox("##visible", &model.visible)) {
-                session.composer.tell(editor.setModel(i, model));
+                document.composer.tell(editor.setModel(i, model));
             }
             ImGui::SameLine();
             if (ImGui::Selectable(labelOf(model).c_str(), editor.selected() == i)) editor.select(i);
@@ -91,27 +91,27 @@ void drawModelList(Session& session) {
     ImGui::EndChild();
 }
 
-void drawSelectedModel(Session& session) {
-    SceneEditor& editor = session.composer.editor;
+void drawSelectedModel(Document& document) {
+    SceneEditor& editor = document.composer.editor;
     if (!editor.selected()) return note("click a model in the picture or in the list to select it");
     const std::size_t index = *editor.selected();
     SceneModel model = *editor.selectedModel();
     ImGui::PushID(static_cast<int>(index));
     ImGui::PushItemWidth(-84.0f);
-    if (ImGui::InputText("name", &model.name)) session.composer.tell(editor.setModel(index, model, "name"));
+    if (ImGui::InputText("name", &model.name)) document.composer.tell(editor.setModel(index, model, "name"));
     if (ImGui::IsItemDeactivated()) editor.endGesture();
     if (dragVector("place (m)", model.translateMetres, {}, editor))
-        session.composer.tell(editor.setModel(index, model, "place"));
+        document.composer.tell(editor.setModel(index, model, "place"));
     glm::dvec3 degrees = glm::degrees(model.rotateRadians);
     if (dragVector("turn (deg)", degrees, kDegrees, editor)) {
         SceneModel turned = model;
         turned.rotateRadians = glm::radians(degrees);
-        session.composer.tell(editor.setModel(index, turned, "turn"));
+        document.composer.tell(editor.setModel(index, turned, "turn"));
     }
-    drawScale(session, index, editor.scene().models[index]);
+    drawScale(document, index, editor.scene().models[index]);
     ImGui::PopItemWidth();
     note(model.path);
-    drawCounts(session, index);
+    drawCounts(document, index);
     ImGui::PopID();
 }
 

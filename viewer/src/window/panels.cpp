@@ -20,7 +20,7 @@ void drawCounts(const gpu::SceneStatistics& s) {
     text(fmt::format("{} on the device, {:.3f} bytes/voxel", bytesText(s.totalBytes()), perVoxel));
 }
 
-void drawPick(const Session& session, const Pick& pick) {
+void drawPick(const Document& document, const Pick& pick) {
     ImGui::Separator();
     const auto c = glm::vec4(pick.baseColor) / 255.0f;
     ImGui::ColorButton("base color", ImVec4(c.x, c.y, c.z, 1.0f));
@@ -28,8 +28,8 @@ void drawPick(const Session& session, const Pick& pick) {
     text(fmt::format("voxel {}, {}, {}", pick.voxel.x, pick.voxel.y, pick.voxel.z));
     text(fmt::format("model {}\ninstance {}\nmaterial {}", pick.model, pick.instance, pick.material));
     text(fmt::format("at {:.3f}, {:.3f}, {:.3f} m", pick.point.x, pick.point.y, pick.point.z));
-    const std::uint32_t probe = nearestProbe(session.shown()->loaded.probes, pick.point);
-    const double toProbe = glm::length(session.placeOfProbe(probe) - pick.point);
+    const std::uint32_t probe = nearestProbe(document.shown()->loaded.probes, pick.point);
+    const double toProbe = glm::length(document.placeOfProbe(probe) - pick.point);
     text(fmt::format("{:.3f} m away; nearest probe {}, {:.2f} m", pick.distanceMetres, probe, toProbe));
 }
 
@@ -49,11 +49,11 @@ void drawPasses(const PassTimes& times) {
     ImGui::EndTable();
 }
 
-void drawHelp(Session& session) {
+void drawHelp(View& view) {
     const ImVec2 window = ImGui::GetIO().DisplaySize;
     ImGui::SetNextWindowPos({0.5f * window.x, 0.5f * window.y}, ImGuiCond_Appearing, {0.5f, 0.5f});
     ImGui::SetNextWindowSize({std::min(780.0f, window.x), std::min(680.0f, window.y)}, ImGuiCond_Appearing);
-    if (ImGui::Begin("Keys", &session.showHelp, ImGuiWindowFlags_NoSavedSettings)) {
+    if (ImGui::Begin("Keys", &view.showHelp, ImGuiWindowFlags_NoSavedSettings)) {
         const auto row = [](std::string_view keys, std::string_view what) {
             text(fmt::format("{:<21} {}", keys, what));
         };
@@ -70,7 +70,7 @@ void drawHelp(Session& session) {
     ImGui::End();
 }
 
-void drawStrip(const Session& session, const std::string& message) {
+void drawStrip(MessageLog& log, const std::string& message) {
     const ImVec2 window = ImGui::GetIO().DisplaySize;
     ImGui::SetNextWindowPos({0.0f, window.y}, ImGuiCond_Always, {0.0f, 1.0f});
     ImGui::SetNextWindowSize({window.x, 0.0f});
@@ -81,7 +81,7 @@ void drawStrip(const Session& session, const std::string& message) {
         ImGui::PushTextWrapPos(0.0f);
         text(message);
         ImGui::PopTextWrapPos();
-        if (ImGui::SmallButton("close")) session.log().dismissStrip();
+        if (ImGui::SmallButton("close")) log.dismissStrip();
         // Above the other windows whatever was clicked last, but below what asks.
         if (!ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup))
             ImGui::BringWindowToDisplayFront(ImGui::GetCurrentWindow());
@@ -96,29 +96,29 @@ void Panels::drawScene(Session& session) {
     const ImVec2 window = ImGui::GetIO().DisplaySize;
     const float height = std::clamp(window.y - 286.0f, 200.0f, 440.0f);
     if (beginPanel("Scene", sceneOpen_, {kMargin, kMenuHeight + kMargin}, {kPanelWidth, height})) {
-        const ShownScene* const shown = session.shown();
-        if (session.isLoading() || session.composer.isReading()) text("loading ...");
-        if (shown == nullptr && !session.isLoading())
+        const ShownScene* const shown = session.document.shown();
+        if (session.document.isLoading() || session.document.composer.isReading()) text("loading ...");
+        if (shown == nullptr && !session.document.isLoading())
             note("Drop a .pf_vox file, a scene or a folder here, or open one with Ctrl+O. H shows all keys.");
         if (shown != nullptr) {
-            text(nameOf(session));
+            text(nameOf(session.document));
             drawCounts(shown->scene.statistics());
-            drawModelList(session);
-            drawSelectedModel(session);
-            if (session.pick()) drawPick(session, *session.pick());
+            drawModelList(session.document, session.input);
+            drawSelectedModel(session.document);
+            if (session.view.pick()) drawPick(session.document, *session.view.pick());
         }
     }
     ImGui::End();
 }
 
-void Panels::drawStatistics(const Session& session) {
+void Panels::drawStatistics(const Document& document, const View& view) {
     const ImVec2 window = ImGui::GetIO().DisplaySize;
     const ImVec2 place(std::max(kMargin, window.x - kPanelWidth - kMargin), kMenuHeight + kMargin);
     if (beginPanel("Statistics", statisticsOpen_, place, {kPanelWidth, 284.0f})) {
-        text(session.device().info().name);
-        const std::vector<float> times(session.frameTimesMs().begin(), session.frameTimesMs().end());
+        text(document.device().info().name);
+        const std::vector<float> times(view.frameTimesMs().begin(), view.frameTimesMs().end());
         if (!times.empty()) {
-            const PictureStatistics& s = session.statistics();
+            const PictureStatistics& s = view.statistics();
             std::vector<float> sorted = times;
             std::sort(sorted.begin(), sorted.end());
             const float worst = sorted.back();
@@ -136,21 +136,21 @@ void Panels::drawStatistics(const Session& session) {
             text(fmt::format("{:.1f} steps a camera ray",
                              rays > 0.0 ? static_cast<double>(s.steps) / rays : 0.0));
             drawPasses(s.passMs);
-            text(fmt::format("{} frames in the picture", session.frames().frames()));
+            text(fmt::format("{} frames in the picture", view.frames().frames()));
         }
-        const gpu::MemoryUse memory = session.device().memory();
+        const gpu::MemoryUse memory = document.device().memory();
         text(fmt::format("memory {}, at most {}", bytesText(memory.currentBytes),
                          bytesText(memory.peakBytes)));
     }
     ImGui::End();
 }
 
-void Panels::drawLog(const Session& session) {
+void Panels::drawLog(const MessageLog& log) {
     const ImVec2 window = ImGui::GetIO().DisplaySize;
     const ImVec2 place(kPanelWidth + 2.0f * kMargin, std::max(kMargin, window.y - 108.0f));
     const ImVec2 size(std::max(200.0f, window.x - 2.0f * kPanelWidth - 4.0f * kMargin), 100.0f);
     if (beginPanel("Log", logOpen_, place, size)) {
-        for (const Message& message : session.log().messages()) {
+        for (const Message& message : log.messages()) {
             const ImVec4 color = message.kind == MessageKind::Error     ? ImVec4(1.0f, 0.45f, 0.4f, 1.0f)
                                  : message.kind == MessageKind::Warning ? ImVec4(1.0f, 0.85f, 0.4f, 1.0f)
                                                                         : ImVec4(0.85f, 0.85f, 0.85f, 1.0f);
@@ -165,26 +165,28 @@ void Panels::drawLog(const Session& session) {
     ImGui::End();
 }
 
-std::string nameOf(const Session& session) {
-    if (session.shown() == nullptr) return {};
-    const std::filesystem::path& file = session.shown()->path.file;
+std::string nameOf(const Document& document) {
+    if (document.shown() == nullptr) return {};
+    const std::filesystem::path& file = document.shown()->path.file;
     const std::string name = file.empty() ? "new scene" : file.filename().string();
-    return session.composer.editor.isChanged() ? name + "*" : name;
+    return document.composer.editor.isChanged() ? name + "*" : name;
 }
 
 void Panels::draw(Session& session) {
-    if (session.settings.showWindows) {
-        drawSceneOverlay(session, {ImGui::GetIO().MousePos.x, ImGui::GetIO().MousePos.y});
+    if (session.view.settings.showWindows) {
+        drawSceneOverlay(session.document, session.view,
+                         {ImGui::GetIO().MousePos.x, ImGui::GetIO().MousePos.y});
         drawMenuBar(session);
         if (sceneOpen_) drawScene(session);
         if (renderingOpen_) drawRendering(session);
-        if (statisticsOpen_) drawStatistics(session);
+        if (statisticsOpen_) drawStatistics(session.document, session.view);
         if (probesOpen_) drawProbes(session);
-        if (logOpen_) drawLog(session);
+        if (logOpen_) drawLog(session.document.log());
     }
-    if (session.showHelp) drawHelp(session);
-    if (const std::optional<std::string> strip = session.log().strip()) drawStrip(session, *strip);
-    drawDialogs(session);
+    if (session.view.showHelp) drawHelp(session.view);
+    if (const std::optional<std::string> strip = session.document.log().strip())
+        drawStrip(session.document.log(), *strip);
+    drawDialogs(session.document);
 }
 
 }  // namespace pfvox::viewer

@@ -1,4 +1,4 @@
-// Panels: the windows upon the picture. They show a Session and change what is public in it.
+// Panels: the windows upon the picture. They show a session and change what is public in it.
 #pragma once
 
 #include <map>
@@ -19,11 +19,11 @@ class Panels {
     void drawMenuBar(Session& session);
     void drawScene(Session& session);
     void drawRendering(Session& session);
-    void drawStatistics(const Session& session);
+    void drawStatistics(const Document& document, const View& view);
     void drawProbes(Session& session);
     void drawProbeDetail(Session& session);
-    void drawLog(const Session& session);
-    void drawDialogs(Session& session);
+    void drawLog(const MessageLog& log);
+    void drawDialogs(Document& document);
 
     bool sceneOpen_ = true;
     bool renderingOpen_ = true;
@@ -37,20 +37,20 @@ class Panels {
 };
 
 /// "court.toml", with a star when there are unsaved changes; empty when nothing is open.
-std::string nameOf(const Session& session);
+std::string nameOf(const Document& document);
 
 // The parts that have files of their own.
 
 /// The models of the scene, and the selected one's fields.
-void drawModelList(Session& session);
-void drawSelectedModel(Session& session);
+void drawModelList(Document& document, Input& input);
+void drawSelectedModel(Document& document);
 /// Sun and sky of the scene.
-void drawSunAndSky(Session& session);
+void drawSunAndSky(Composer& composer);
 /// Where the probes stand.
-void drawProbeGrid(Session& session);
+void drawProbeGrid(Document& document, View& view);
 /// Boxes, probes and handles upon the picture, below all windows. `cursor` is in the window's unit.
-void drawSceneOverlay(const Session& session, const glm::dvec2& cursor);
+void drawSceneOverlay(const Document& document, const View& view, const glm::dvec2& cursor);
 /// Save the changes?
-void drawLeaveQuestion(Session& session);
+void drawLeaveQuestion(Composer& composer);
 
 }  // namespace pfvox::viewer

@@ -16,16 +16,17 @@ namespace pfvox::viewer {
 namespace {
 
 /// The whole grid, with the step it has, so that it encloses the models.
-void fitToScene(Session& session) {
-    const LoadedScene& loaded = session.shown()->loaded;
-    const ProbeGridRequest& now = session.composer.editor.scene().probes;
-    const Result<ProbeGrid> grid = fitProbeGrid({.stepMetres = now.stepMetres}, loaded.bounds, session.log());
-    if (!grid) return session.log().addError(describe(grid.error()));
+void fitToScene(Document& document) {
+    const LoadedScene& loaded = document.shown()->loaded;
+    const ProbeGridRequest& now = document.composer.editor.scene().probes;
+    const Result<ProbeGrid> grid =
+        fitProbeGrid({.stepMetres = now.stepMetres}, loaded.bounds, document.log());
+    if (!grid) return document.log().addError(describe(grid.error()));
     ProbeGridRequest fitted = now;
     fitted.position = glm::dvec3(grid->start);
     fitted.stepMetres = glm::dvec3(grid->step);
     fitted.count = grid->counts;
-    session.composer.tell(session.composer.editor.setProbes(fitted));
+    document.composer.tell(document.composer.editor.setProbes(fitted));
 }
 
 std::string givenText(const ProbeGridRequest& probes) {
@@ -38,16 +39,16 @@ std::string givenText(const ProbeGridRequest& probes) {
                        given.size() < 3 ? ", else fitted" : "");
 }
 
-void drawField(Session& session) {
-    const ShownProbes* const probes = session.probes();
+void drawField(Document& document) {
+    const ShownProbes* const probes = document.probes();
     ImGui::Separator();
-    if (ImGui::Button("Load ...")) session.composer.dialog = Dialog::LoadProbes;
+    if (ImGui::Button("Load ...")) document.composer.dialog = Dialog::LoadProbes;
     if (probes == nullptr) {
         ImGui::SameLine();
         return note("none: probe-bake makes them");
     }
     ImGui::SameLine();
-    if (ImGui::Button("Drop")) return session.dropProbes();
+    if (ImGui::Button("Drop")) return document.dropProbes();
     ImGui::SameLine();
     text(probes->file.filename().string());
     std::vector<ProbeRecord> records;
@@ -58,23 +59,23 @@ void drawField(Session& session) {
     const ProbeResolution& maps = probes->info.resolution;
     note(fmt::format("maps {} depth, {} light, {} irradiance, {}", maps.depth, maps.light, maps.irradiance,
                      bytesText(probes->field.statistics().totalBytes())));
-    if (!probes->ofThisScene || session.composer.editor.isChanged())
+    if (!probes->ofThisScene || document.composer.editor.isChanged())
         note("baked for another state of the scene");
 }
 
 /// Which maps an atlas view shows: one page after the other, or one probe.
 void drawAtlasChoice(Session& session) {
-    const std::optional<AtlasLayout> maps = session.shownAtlas();
+    const std::optional<AtlasLayout> maps = session.view.shownAtlas();
     if (!maps) return;
     ImGui::Separator();
-    AtlasChoice& atlas = session.atlas;
+    AtlasChoice& atlas = session.view.atlas;
     bool alone = atlas.probe >= 0;
-    ImGui::BeginDisabled(!alone && !session.selectedProbe);
+    ImGui::BeginDisabled(!alone && !session.view.selectedProbe);
     ImGui::Checkbox("the selected probe alone", &alone);
     ImGui::EndDisabled();
-    atlas.probe = alone && session.selectedProbe ? static_cast<std::int32_t>(*session.selectedProbe)
-                  : alone                        ? atlas.probe
-                                                 : -1;
+    atlas.probe = alone && session.view.selectedProbe ? static_cast<std::int32_t>(*session.view.selectedProbe)
+                  : alone                             ? atlas.probe
+                                                      : -1;
     if (maps->pages < 2) return;
     ImGui::BeginDisabled(maps->page == 0);
     if (ImGui::ArrowButton("##page before", ImGuiDir_Left)) atlas.page = maps->page - 1;
@@ -90,16 +91,16 @@ void drawAtlasChoice(Session& session) {
 
 }  // namespace
 
-void drawProbeGrid(Session& session) {
-    SceneEditor& editor = session.composer.editor;
-    const ProbeGrid& grid = session.shown()->loaded.probes;
+void drawProbeGrid(Document& document, View& view) {
+    SceneEditor& editor = document.composer.editor;
+    const ProbeGrid& grid = document.shown()->loaded.probes;
     ProbeGridRequest probes = editor.scene().probes;
-    ImGui::Checkbox("show the grid (G)", &session.settings.showProbeGrid);
+    ImGui::Checkbox("show the grid (G)", &view.settings.showProbeGrid);
     ImGui::PushItemWidth(-84.0f);
     glm::dvec3 start = probes.position.value_or(glm::dvec3(grid.start));
     glm::dvec3 step = probes.stepMetres.value_or(glm::dvec3(grid.step));
     glm::uvec3 counts = probes.count.value_or(grid.counts);
-    const auto set = [&](const char* gesture) { session.composer.tell(editor.setProbes(probes, gesture)); };
+    const auto set = [&](const char* gesture) { document.composer.tell(editor.setProbes(probes, gesture)); };
     if (dragVector("start (m)", start, {.speed = 0.02f}, editor)) {
         probes.position = start;
         set("start");
@@ -114,31 +115,31 @@ void drawProbeGrid(Session& session) {
     }
     if (dragCounts("proximity", probes.proximityCells, 512, editor)) set("proximity");
     ImGui::PopItemWidth();
-    if (ImGui::Button("Fit to the scene")) fitToScene(session);
+    if (ImGui::Button("Fit to the scene")) fitToScene(document);
     ImGui::SameLine();
     if (ImGui::Button("Automatic"))
-        session.composer.tell(editor.setProbes({.proximityCells = probes.proximityCells}));
+        document.composer.tell(editor.setProbes({.proximityCells = probes.proximityCells}));
     note(fmt::format("{} probes, {}", grid.probeCount(), givenText(editor.scene().probes)));
 }
 
 void Panels::drawProbeDetail(Session& session) {
-    if (!session.selectedProbe)
-        return note(session.shownAtlas() ? "click a map for the probe's figures"
-                                         : "click a probe of the grid for its figures");
-    const std::uint32_t index = *session.selectedProbe;
-    const ProbeGrid& grid = session.shown()->loaded.probes;
+    if (!session.view.selectedProbe)
+        return note(session.view.shownAtlas() ? "click a map for the probe's figures"
+                                              : "click a probe of the grid for its figures");
+    const std::uint32_t index = *session.view.selectedProbe;
+    const ProbeGrid& grid = session.document.shown()->loaded.probes;
     const glm::uvec3 place = grid.placeOf(index);
-    const glm::dvec3 at = session.placeOfProbe(index);
+    const glm::dvec3 at = session.document.placeOfProbe(index);
     ImGui::Separator();
     text(fmt::format("probe {} ({}, {}, {}) at {:.2f}, {:.2f}, {:.2f} m", index, place.x, place.y, place.z,
                      at.x, at.y, at.z));
-    const ShownProbes* const probes = session.probes();
+    const ShownProbes* const probes = session.document.probes();
     if (probes == nullptr || !(probes->info.grid == grid)) return note("not baked at this place");
     const auto wanted = std::pair(probes->file, index);
     if (detailOf_ != wanted) {
         detailOf_ = wanted;
-        Result<ProbeDetail> read = readProbeDetail(probes->file, index, session.log());
-        if (!read) session.log().addError(describe(read.error()));
+        Result<ProbeDetail> read = readProbeDetail(probes->file, index, session.document.log());
+        if (!read) session.document.log().addError(describe(read.error()));
         detail_ = read ? std::optional(*std::move(read)) : std::nullopt;
     }
     if (!detail_) return;
@@ -164,13 +165,13 @@ void Panels::drawProbes(Session& session) {
     const ImVec2 window = ImGui::GetIO().DisplaySize;
     const ImVec2 place(std::max(kMargin, window.x - kPanelWidth - kMargin), 320.0f);
     if (beginPanel("Probes", probesOpen_, place, {kPanelWidth, std::max(120.0f, window.y - 328.0f)})) {
-        if (session.shown() == nullptr) {
+        if (session.document.shown() == nullptr) {
             note("nothing is open");
         } else {
-            drawProbeGrid(session);
-            drawField(session);
+            drawProbeGrid(session.document, session.view);
+            drawField(session.document);
             drawAtlasChoice(session);
-            if (session.shown() != nullptr) drawProbeDetail(session);
+            if (session.document.shown() != nullptr) drawProbeDetail(session);
         }
     }
     ImGui::End();

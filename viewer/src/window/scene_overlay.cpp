@@ -25,21 +25,22 @@ ImVec2 at(const glm::dvec2& point) {
 
 class OverlayDrawing {
   public:
-    OverlayDrawing(const Session& session, const glm::dvec2& cursor)
-        : session_(session),
-          view_(session.projection()),
+    OverlayDrawing(const Document& document, const View& view, const glm::dvec2& cursor)
+        : document_(document),
+          seen_(view),
+          view_(view.projection()),
           cursor_(cursor),
           list_(ImGui::GetBackgroundDrawList()) {}
 
     void draw() {
-        if (session_.settings.showProbeGrid) drawProbes();
-        const std::vector<PlacedAsset>& parts = session_.shown()->loaded.parts;
-        const auto selected = session_.composer.editor.selected();
+        if (seen_.settings.showProbeGrid) drawProbes();
+        const std::vector<PlacedAsset>& parts = document_.shown()->loaded.parts;
+        const auto selected = document_.composer.editor.selected();
         for (std::size_t i = 0; i < std::min(parts.size(), kMostBoxes); ++i) {
             const bool isSelected = parts[i].model == selected;
-            if (isSelected || session_.settings.showBounds) drawBox(i, isSelected);
+            if (isSelected || seen_.settings.showBounds) drawBox(i, isSelected);
         }
-        if (const std::optional<Gizmo> gizmo = session_.gizmo()) drawGizmo(*gizmo);
+        if (const std::optional<Gizmo> gizmo = seen_.gizmo()) drawGizmo(*gizmo);
     }
 
   private:
@@ -50,9 +51,9 @@ class OverlayDrawing {
 
     /// Turned as the model is.
     void drawBox(std::size_t part, bool selected) {
-        const WorldBounds& box = session_.shown()->assetBoxes[part];
+        const WorldBounds& box = document_.shown()->assetBoxes[part];
         if (box.empty()) return;
-        const Affine& world = session_.shown()->loaded.parts[part].worldFromAsset;
+        const Affine& world = document_.shown()->loaded.parts[part].worldFromAsset;
         const auto corner = [&](int i) {
             const glm::dvec3 p((i & 1) != 0 ? box.max.x : box.min.x, (i & 2) != 0 ? box.max.y : box.min.y,
                                (i & 4) != 0 ? box.max.z : box.min.z);
@@ -68,8 +69,8 @@ class OverlayDrawing {
     }
 
     ImU32 colorOf(std::uint32_t probe) const {
-        const ShownProbes* const baked = session_.probes();
-        if (baked == nullptr || !(baked->info.grid == session_.shown()->loaded.probes) ||
+        const ShownProbes* const baked = document_.probes();
+        if (baked == nullptr || !(baked->info.grid == document_.shown()->loaded.probes) ||
             probe >= baked->probes.size())
             return IM_COL32(235, 235, 235, 200);
         switch (baked->probes[probe].record.state) {
@@ -86,15 +87,15 @@ class OverlayDrawing {
     /// As spheres a tenth of a step wide, but never too small to be seen nor so large that they hide the
     /// scene.
     void drawProbes() {
-        const ProbeGrid& grid = session_.shown()->loaded.probes;
+        const ProbeGrid& grid = document_.shown()->loaded.probes;
         const double radius = 0.05 * std::min({grid.step.x, grid.step.y, grid.step.z});
         const auto every = static_cast<std::uint32_t>(1 + grid.probeCount() / kMostProbes);
         for (std::uint32_t i = 0; i < grid.probeCount(); i += every) drawProbe(i, radius);
-        if (session_.selectedProbe) drawProbe(*session_.selectedProbe, radius);
+        if (seen_.selectedProbe) drawProbe(*seen_.selectedProbe, radius);
     }
 
     void drawProbe(std::uint32_t index, double radius) {
-        const glm::dvec3 place = session_.placeOfProbe(index);
+        const glm::dvec3 place = document_.placeOfProbe(index);
         const auto point = view_.pointOf(place);
         if (!point || point->x < -9.0 || point->y < -9.0 || point->x > view_.windowSize().x + 9.0 ||
             point->y > view_.windowSize().y + 9.0)
@@ -103,7 +104,7 @@ class OverlayDrawing {
         const auto r = static_cast<float>(std::clamp(units, kFarProbeUnits, kNearProbeUnits));
         list_->AddCircleFilled(at(*point), r, colorOf(index), 12);
         list_->AddCircle(at(*point), r, IM_COL32(0, 0, 0, 160), 12);
-        if (session_.selectedProbe == index) list_->AddCircle(at(*point), r + 3.0f, kSelectedColor, 20, 2.0f);
+        if (seen_.selectedProbe == index) list_->AddCircle(at(*point), r + 3.0f, kSelectedColor, 20, 2.0f);
     }
 
     void drawGizmo(const Gizmo& gizmo) {
@@ -141,17 +142,18 @@ class OverlayDrawing {
         list_->AddQuadFilled(points[0], points[1], points[2], points[3], color);
     }
 
-    const Session& session_;
+    const Document& document_;
+    const View& seen_;
     Projection view_;
     glm::dvec2 cursor_;
     ImDrawList* list_;
 };
 
 /// A frame around the map of the selected probe.
-void drawSelectedMap(const Session& session, const AtlasLayout& maps) {
-    const auto corner = session.selectedProbe ? maps.cornerOf(*session.selectedProbe) : std::nullopt;
+void drawSelectedMap(const View& view, const AtlasLayout& maps) {
+    const auto corner = view.selectedProbe ? maps.cornerOf(*view.selectedProbe) : std::nullopt;
     if (!corner || maps.count == 1) return;
-    const glm::dvec2 scale = session.windowSize / glm::dvec2(session.frames().size());
+    const glm::dvec2 scale = view.windowSize / glm::dvec2(view.frames().size());
     const glm::dvec2 from = glm::dvec2(*corner) * scale;
     const glm::dvec2 to = from + static_cast<double>(maps.cell) * scale;
     ImGui::GetBackgroundDrawList()->AddRect(at(from), at(to), kSelectedColor, 0.0f, ImDrawFlags_None, 2.0f);
@@ -159,10 +161,10 @@ void drawSelectedMap(const Session& session, const AtlasLayout& maps) {
 
 }  // namespace
 
-void drawSceneOverlay(const Session& session, const glm::dvec2& cursor) {
-    if (session.shown() == nullptr) return;
-    if (const std::optional<AtlasLayout> maps = session.shownAtlas()) return drawSelectedMap(session, *maps);
-    OverlayDrawing(session, cursor).draw();
+void drawSceneOverlay(const Document& document, const View& view, const glm::dvec2& cursor) {
+    if (document.shown() == nullptr) return;
+    if (const std::optional<AtlasLayout> maps = view.shownAtlas()) return drawSelectedMap(view, *maps);
+    OverlayDrawing(document, view, cursor).draw();
 }
 
 }  // namespace pfvox::viewer

@@ -76,18 +76,18 @@ bool editColor(const char* label, glm::dvec3& value, SceneEditor& editor) {
     return changed;
 }
 
-bool commandButton(Session& session, const char* label, Command command) {
+bool commandButton(Input& input, const char* label, Command command) {
     const KeyBinding* const binding = bindingOf(command);
     const bool pressed = ImGui::Button(label);
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", std::string(binding->keyText).c_str());
-    if (pressed) session.execute(*binding);
+    if (pressed) input.execute(*binding);
     return pressed;
 }
 
-void commandItem(Session& session, const char* label, Command command, bool enabled, bool checked) {
+void commandItem(Input& input, const char* label, Command command, bool enabled, bool checked) {
     const KeyBinding* const binding = bindingOf(command);
     if (ImGui::MenuItem(label, std::string(binding->keyText).c_str(), checked, enabled))
-        session.execute(*binding);
+        input.execute(*binding);
 }
 
 void drawSmallMap(const char* label, std::uint32_t resolution, const std::vector<std::uint32_t>& pixels,

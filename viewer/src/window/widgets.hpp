@@ -7,7 +7,7 @@
 #include <glm/glm.hpp>
 #include <string>
 
-#include "session.hpp"
+#include "input.hpp"
 
 namespace pfvox::viewer {
 
@@ -46,9 +46,8 @@ bool dragCounts(const char* label, glm::uvec3& value, std::uint32_t high, SceneE
 bool editColor(const char* label, glm::dvec3& value, SceneEditor& editor);
 
 /// A button or menu item that does what a key does.
-bool commandButton(Session& session, const char* label, Command command);
-void commandItem(Session& session, const char* label, Command command, bool enabled = true,
-                 bool checked = false);
+bool commandButton(Input& input, const char* label, Command command);
+void commandItem(Input& input, const char* label, Command command, bool enabled = true, bool checked = false);
 
 /// Pixels as a square of the given edge, with a name under it.
 void drawSmallMap(const char* label, std::uint32_t resolution, const std::vector<std::uint32_t>& pixels,

@@ -1,48 +1,9 @@
-#include "bake/exposed_faces.hpp"
-
-#include <bit>
 #include <optional>
+#include <pfvox/octree_walk.hpp>
 
-namespace pfvox::bake {
+namespace pfvox {
 
 namespace {
-
-constexpr std::uint32_t kNone = 0xffffffffu;
-
-class LeafWalk {
-  public:
-    LeafWalk(const OctreeRegion& region, const std::function<void(const Leaf&)>& visit)
-        : region_(region), visit_(visit) {}
-
-    /// `value`: hoisted above the node, kNone without; the node's children have an edge of 2^level.
-    void node(std::uint32_t index, glm::ivec3 corner, std::uint32_t level, std::uint32_t value) {
-        const std::uint32_t d = region_.tree.nodes[index];
-        std::uint32_t child = node::innerMask(d) != 0 ? region_.tree.firstChild(index) : 0;
-        for (std::uint32_t rest = node::validMask(d); rest != 0; rest &= rest - 1) {
-            const auto slot = static_cast<std::uint32_t>(std::countr_zero(rest));
-            const glm::ivec3 at =
-                corner + (glm::ivec3(slot & 1u, slot >> 1 & 1u, slot >> 2) << static_cast<int>(level));
-            const std::uint32_t own = valueOf(index, slot, value);
-            if ((node::leafMask(d) >> slot & 1u) == 0) {
-                node(child++, at, level - 1, own);
-            } else {
-                visit_({.corner = at, .edge = 1 << level, .material = region_.palette[own]});
-            }
-        }
-    }
-
-  private:
-    std::uint32_t valueOf(std::uint32_t index, std::uint32_t slot, std::uint32_t hoisted) const {
-        if (hoisted != kNone) return hoisted;
-        const std::uint32_t lookup = region_.lookup[index];
-        if ((lookup >> slot & 1u) == 0) return kNone;
-        return region_.value((lookup >> 8) +
-                             static_cast<std::uint32_t>(std::popcount(lookup & 0xffu & ((1u << slot) - 1))));
-    }
-
-    const OctreeRegion& region_;
-    const std::function<void(const Leaf&)>& visit_;
-};
 
 /// Which voxels of a region hide faces, one bit each; of those beyond it the model is asked.
 class HidingVoxels {
@@ -72,10 +33,10 @@ class HidingVoxels {
                     static_cast<std::size_t>(size_.y) * static_cast<std::size_t>(p.z));
     }
     void fill(const Leaf& leaf) {
-        for (int z = 0; z < leaf.edge; ++z)
-            for (int y = 0; y < leaf.edge; ++y) {
+        for (int z = 0; z < leaf.edge(); ++z)
+            for (int y = 0; y < leaf.edge(); ++y) {
                 const std::size_t row = indexOf(leaf.corner + glm::ivec3(0, y, z));
-                for (std::size_t x = 0; x < static_cast<std::size_t>(leaf.edge); ++x) bits_[row + x] = true;
+                for (std::size_t x = 0; x < static_cast<std::size_t>(leaf.edge()); ++x) bits_[row + x] = true;
             }
     }
 
@@ -91,9 +52,9 @@ template <class Visit>
 void forEachVoxelOfSide(const Leaf& leaf, int face, const Visit& visit) {
     const int axis = face / 2;
     glm::ivec3 at(0);
-    at[axis] = face % 2 != 0 ? leaf.edge - 1 : 0;
-    for (int j = 0; j < leaf.edge; ++j) {
-        for (int i = 0; i < leaf.edge; ++i) {
+    at[axis] = face % 2 != 0 ? leaf.edge() - 1 : 0;
+    for (int j = 0; j < leaf.edge(); ++j) {
+        for (int i = 0; i < leaf.edge(); ++i) {
             at[(axis + 1) % 3] = i;
             at[(axis + 2) % 3] = j;
             visit(leaf.corner + at);
@@ -108,11 +69,6 @@ bool anyWanted(const OctreeRegion& region, const std::vector<bool>& wanted) {
 }
 
 }  // namespace
-
-void forEachLeaf(const OctreeRegion& region, const std::function<void(const Leaf&)>& visit) {
-    if (region.tree.nodes.empty()) return;
-    LeafWalk(region, visit).node(0, region.originVoxels, region.tree.depth - 1, kNone);
-}
 
 void forEachExposedFace(const OctreeModel& model, const FaceFilter& filter,
                         const std::function<void(const VoxelFace&)>& visit) {
@@ -133,4 +89,4 @@ void forEachExposedFace(const OctreeModel& model, const FaceFilter& filter,
     }
 }
 
-}  // namespace pfvox::bake
+}  // namespace pfvox
