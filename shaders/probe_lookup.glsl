@@ -80,7 +80,7 @@ float agreementOf(ProbeFieldRecord field, ProbeEntry probe, SurfacePoint point, 
 }
 
 // What a texel of mixed planes shows is a mixture of their light: it counts where there is nothing better.
-float purityWeight(float fraction) { return fraction >= 1.0 ? 1.0 : kMixedTexelWeight * fraction; }
+float purityWeight(float purity) { return purity >= 1.0 ? 1.0 : kMixedTexelWeight * purity; }
 
 // Light of the texels around the direction to the point, those only that agree; w = how far they do, 0 to 1.
 vec4 lightSeenBy(ProbeFieldRecord field, ProbeEntry probe, SurfacePoint point) {
@@ -92,13 +92,13 @@ vec4 lightSeenBy(ProbeFieldRecord field, ProbeEntry probe, SurfacePoint point) {
     for (int i = 0; i < 4; ++i) {
         ivec2 offset = ivec2(i & 1, i >> 1);
         ivec2 texel = wrappedTexel(low + offset, field.lightResolution);
-        float fraction = agreementOf(field, probe, point, texel);
-        if (fraction <= 0.0) continue;
+        float purity = agreementOf(field, probe, point, texel);
+        if (purity <= 0.0) continue;
         vec2 near = max(mix(1.0 - fraction, fraction, vec2(offset)), vec2(kLeastTexelWeight));
-        float weight = near.x * near.y * purityWeight(fraction);
+        float weight = near.x * near.y * purityWeight(purity);
         uint word = ProbeWords(probe.light).at[uint(texel.x) + field.lightResolution * uint(texel.y)];
         sum += weight * vec4(unpackLight(word), 1.0);
-        covered += near.x * near.y * (fraction >= 1.0 ? 1.0 : 0.25 * fraction * fraction);
+        covered += near.x * near.y * (purity >= 1.0 ? 1.0 : 0.25 * purity * purity);
     }
     return sum.w > 0.0 ? vec4(sum.rgb / sum.w, min(kTexelConfidence * covered, 1.0)) : vec4(0.0);
 }
