@@ -53,6 +53,29 @@ Ray behindGlass(Scene scene, Ray ray, Hit hit, Surface surface) {
 // One body of glass is one sheet: only what a ray enters from outside counts.
 bool entersGlass(Surface surface, uint lastGlass) { return surface.face != kFaceInside || surface.material != lastGlass; }
 
+// Fraction of the light that a sheet of glass lets straight on, by color. Directions of unit length.
+vec3 sheetTransmittance(MaterialRecord glass, vec3 normal, vec3 direction) {
+    return (1.0 - glassReflectance(glass, abs(dot(normal, direction)))) * glassTint(glass);
+}
+
+// A ray that looks through glass, and what it still lets through.
+struct GlassWalk {
+    Ray ray;
+    vec3 through;
+    uint lastGlass;
+};
+
+// True when what was hit is glass and the ray goes on behind it; `enters`: as another body than the last one.
+bool goOnThroughGlass(Scene scene, inout GlassWalk walk, Hit hit, Surface surface, MaterialRecord material, out bool enters) {
+    enters = false;
+    if (kHasGlass == 0u || !letsThrough(material)) return false;
+    enters = entersGlass(surface, walk.lastGlass);
+    if (enters) walk.through *= sheetTransmittance(material, surface.normal, walk.ray.direction);
+    walk.lastGlass = surface.material;
+    walk.ray = behindGlass(scene, walk.ray, hit, surface);
+    return true;
+}
+
 // Fraction of the light that comes through one model, by color.
 vec3 transmittanceOfModel(Scene scene, uint instance, Ray ray, inout Walk walk, inout RayCounts counts) {
     vec3 through = vec3(1.0);
@@ -68,10 +91,7 @@ vec3 transmittanceOfModel(Scene scene, uint instance, Ray ray, inout Walk walk, 
             Surface surface = surfaceOf(scene, ray, hit);
             MaterialRecord material = materialOf(scene, surface);
             if (!letsThrough(material)) return vec3(0.0);
-            if (surface.material != lastGlass) {
-                float cosine = abs(dot(surface.normal, ray.direction));
-                through *= (1.0 - glassReflectance(material, cosine)) * glassTint(material);
-            }
+            if (surface.material != lastGlass) through *= sheetTransmittance(material, surface.normal, ray.direction);
             lastGlass = surface.material;
             state = passCell(walk);
         }
@@ -86,17 +106,10 @@ vec3 transmittance(Scene sceneBuffer, Ray ray, inout RayCounts counts) {
     ++counts.rays;
     if (kHasGlass == 0u) return traceAny(sceneBuffer, ray, counts.trace) ? vec3(0.0) : vec3(1.0);
     SceneHeader scene = sceneBuffer.header;
-    BvhWalk bvhWalk = beginBvhWalk(scene, ray);
+    SceneWalk walk = beginSceneWalk(scene, ray);
     vec3 through = vec3(1.0);
-    BvhNode leaf;
-    while (nextBvhLeaf(BvhNodes(scene.bvhNodes), bvhWalk, ray.tMax, leaf)) {
-        for (uint i = leaf.first; i < leaf.first + leaf.count; ++i) {
-            Walk walk;
-            if (!beginInstance(scene, i, ray, ray.tMax, walk)) continue;
-            through *= transmittanceOfModel(sceneBuffer, i, ray, walk, counts);
-            if (maxOf(through) <= 0.0) return vec3(0.0);
-        }
-    }
+    while (maxOf(through) > 0.0 && enterNextModel(scene, walk))
+        through *= transmittanceOfModel(sceneBuffer, instanceOf(walk), ray, walk.model, counts);
     return through;
 }
 
@@ -121,20 +134,12 @@ Hit castThroughGlass(Scene sceneBuffer, Ray ray, uint glass, inout RayCounts cou
     if (glass == kNoMaterial) return castRay(sceneBuffer, ray, counts);
     ++counts.rays;
     SceneHeader scene = sceneBuffer.header;
-    BvhWalk bvhWalk = beginBvhWalk(scene, ray);
-    Hit hit = missOf(ray);
-    BvhNode leaf;
-    while (nextBvhLeaf(BvhNodes(scene.bvhNodes), bvhWalk, hit.t, leaf)) {
-        for (uint i = leaf.first; i < leaf.first + leaf.count; ++i) {
-            Walk walk;
-            if (!beginInstance(scene, i, ray, hit.t, walk)) continue;
-            if (!leaveGlass(sceneBuffer, i, ray, glass, walk)) continue;
-            if (!finishWalk(walk, counts.trace)) continue;
-            takeHit(walk, hit);
-            hit.instance = i;
-        }
+    SceneWalk walk = beginSceneWalk(scene, ray);
+    while (enterNextModel(scene, walk)) {
+        if (!leaveGlass(sceneBuffer, instanceOf(walk), ray, glass, walk.model)) continue;
+        leaveModel(walk, finishWalk(walk.model, counts.trace));
     }
-    return hit;
+    return walk.hit;
 }
 
 // Irradiance of the sun at normal incidence, as it arrives at a point.

@@ -219,7 +219,7 @@ void castPersistent() {
             state = stepWalk(walk.model);
             inModel = state == kWalkGoesOn;
         }
-        if (state != kWalkGoesOn) leaveModel(walk, state);
+        if (state != kWalkGoesOn) leaveModel(walk, state == kWalkHit);
         subgroupBarrier();
     }
 }

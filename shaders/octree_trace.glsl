@@ -325,27 +325,10 @@ bool beginInstance(SceneHeader scene, uint index, Ray ray, float tMax, out Walk 
                      tMax, ray.cone, walk);
 }
 
-Hit traceScene(Scene sceneBuffer, Ray ray, bool anyHit, inout TraceStatistics statistics) {
-    SceneHeader scene = sceneBuffer.header;
-    BvhWalk bvhWalk = beginBvhWalk(scene, ray);
-    Hit hit = missOf(ray);
-    BvhNode leaf;
-    while (nextBvhLeaf(BvhNodes(scene.bvhNodes), bvhWalk, hit.t, leaf)) {
-        for (uint i = leaf.first; i < leaf.first + leaf.count; ++i) {
-            Walk walk;
-            if (!beginInstance(scene, i, ray, hit.t, walk)) continue;
-            if (!finishWalk(walk, statistics)) continue;
-            takeHit(walk, hit);
-            hit.instance = i;
-            if (anyHit) return hit;
-        }
-    }
-    return hit;
-}
-
-// traceScene in pieces, for programs whose lanes go on to another ray as soon as theirs has ended (Aila and Laine 2009,
-// "Understanding the Efficiency of Ray Traversal on GPUs"): enterNextModel, then stepWalk(walk.model) until it does not
-// go on, then leaveModel, and again.
+// The one way through all instances, nearest boxes first: enterNextModel, then walk.model to its end, then leaveModel, and
+// again. Whoever traces decides in between what a hit means: the closest, any, glass that is passed. In pieces, because
+// lanes of some programs go on to another ray as soon as theirs has ended (Aila and Laine 2009, "Understanding the
+// Efficiency of Ray Traversal on GPUs").
 struct SceneWalk {
     Ray ray;
     Hit hit;
@@ -378,10 +361,23 @@ bool enterNextModel(SceneHeader scene, inout SceneWalk walk) {
     }
 }
 
-void leaveModel(inout SceneWalk walk, uint state) {
-    if (state != kWalkHit) return;
+uint instanceOf(SceneWalk walk) { return walk.next - 1u; }
+
+void leaveModel(inout SceneWalk walk, bool hit) {
+    if (!hit) return;
     takeHit(walk.model, walk.hit);
-    walk.hit.instance = walk.next - 1u;
+    walk.hit.instance = instanceOf(walk);
+}
+
+Hit traceScene(Scene sceneBuffer, Ray ray, bool anyHit, inout TraceStatistics statistics) {
+    SceneHeader scene = sceneBuffer.header;
+    SceneWalk walk = beginSceneWalk(scene, ray);
+    while (enterNextModel(scene, walk)) {
+        bool hit = finishWalk(walk.model, statistics);
+        leaveModel(walk, hit);
+        if (anyHit && hit) break;
+    }
+    return walk.hit;
 }
 
 Hit traceClosest(Scene scene, Ray ray, inout TraceStatistics statistics) {

@@ -17,37 +17,30 @@ Seen look(ViewParameters view, Scene scene, Ray ray, inout RayCounts counts) {
     seen.pixel = SeenPixel(kInfinity, 0u, 0u, 0u, 0u, 0u, packLight(vec3(1.0)), 0u);
     seen.shine = SeenShine(vec3(0.0), kInfinity, 0u, 0u, 0u, 0u);
     vec3 camera = ray.origin;
-    vec3 through = vec3(1.0);
-    uint lastGlass = kNoMaterial;
+    GlassWalk walk = GlassWalk(ray, vec3(1.0), kNoMaterial);
     for (uint i = 0u; i <= kMaxGlassSteps; ++i) {
-        Hit hit = castRay(scene, ray, counts);
-        float ground = groundAlong(view, ray);
+        Hit hit = castRay(scene, walk.ray, counts);
+        float ground = groundAlong(view, walk.ray);
         if (ground < hit.t) {
-            float distance = length(ray.origin + ground * ray.direction - camera);
+            float distance = length(walk.ray.origin + ground * ray.direction - camera);
             seen.pixel = SeenPixel(distance, kGroundMaterial, packWideNormal(kGroundNormal), 0u,
-                                   packCell(groundVoxel(view), kGroundNormal), 0u, packLight(through), 0u);
+                                   packCell(groundVoxel(view), kGroundNormal), 0u, packLight(walk.through), 0u);
             return seen;
         }
         if (hit.instance == kNoInstance) break;
-        Surface surface = surfaceOf(scene, ray, hit);
-        MaterialRecord material = materialOf(scene, surface);
+        Surface surface = surfaceOf(scene, walk.ray, hit);
         float distance = kHasGlass == 0u ? hit.t : length(surface.position - camera);
-        if (kHasGlass == 0u || !letsThrough(material) || i == kMaxGlassSteps) {
+        bool enters = false;
+        if (i == kMaxGlassSteps || !goOnThroughGlass(scene, walk, hit, surface, materialOf(scene, surface), enters)) {
             seen.pixel = SeenPixel(distance, surface.material, packWideNormal(surface.normal), surface.lodColor,
-                                   packCell(surface), 0u, packLight(through), 0u);
+                                   packCell(surface), 0u, packLight(walk.through), 0u);
             return seen;
         }
-        if (entersGlass(surface, lastGlass)) {
-            if (seen.shine.distance == kInfinity)
-                seen.shine = SeenShine(vec3(0.0), distance, surface.material, packWideNormal(surface.normal),
-                                       packCell(surface), 0u);
-            float cosine = abs(dot(surface.normal, ray.direction));
-            through *= (1.0 - glassReflectance(material, cosine)) * glassTint(material);
-        }
-        lastGlass = surface.material;
-        ray = behindGlass(scene, ray, hit, surface);
+        if (enters && seen.shine.distance == kInfinity)
+            seen.shine = SeenShine(vec3(0.0), distance, surface.material, packWideNormal(surface.normal),
+                                   packCell(surface), 0u);
     }
-    seen.pixel.through = packLight(through);
+    seen.pixel.through = packLight(walk.through);
     return seen;
 }
 

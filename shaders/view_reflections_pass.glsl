@@ -22,26 +22,20 @@ vec3 groundRadiance(ViewParameters view, Scene scene, Ray ray, float distance, i
 }
 
 vec3 radianceAlong(ViewParameters view, Scene scene, Ray ray, uint key, inout RayCounts counts) {
-    vec3 through = vec3(1.0);
-    uint lastGlass = kNoMaterial;
+    GlassWalk walk = GlassWalk(ray, vec3(1.0), kNoMaterial);
     for (uint i = 0u; i < kMaxGlassSteps; ++i) {
-        Hit hit = castRay(scene, ray, counts);
-        float ground = groundAlong(view, ray);
-        if (ground < hit.t) return through * groundRadiance(view, scene, ray, ground, counts);
-        if (hit.instance == kNoInstance) return through * skyRadiance(view, ray.direction);
-        Surface surface = surfaceOf(scene, ray, hit);
-        MaterialRecord material = materialOf(scene, surface);
-        if (kHasGlass == 0u || !letsThrough(material)) {
-            SurfacePart part = partOf(scene, surface);
-            if (part.material.type == kMaterialMetal) part.material.type = 0u;  // what it mirrors is about as bright
-            vec3 sun = sunFraction(view, scene, part, counts);
-            vec3 indirect = indirectOf(view, scene, part, key, counts);
-            return through * radianceFrom(view, part, -ray.direction, sun, indirect);
-        }
-        if (entersGlass(surface, lastGlass))
-            through *= (1.0 - glassReflectance(material, abs(dot(surface.normal, ray.direction)))) * glassTint(material);
-        lastGlass = surface.material;
-        ray = behindGlass(scene, ray, hit, surface);
+        Hit hit = castRay(scene, walk.ray, counts);
+        float ground = groundAlong(view, walk.ray);
+        if (ground < hit.t) return walk.through * groundRadiance(view, scene, walk.ray, ground, counts);
+        if (hit.instance == kNoInstance) return walk.through * skyRadiance(view, ray.direction);
+        Surface surface = surfaceOf(scene, walk.ray, hit);
+        bool enters;
+        if (goOnThroughGlass(scene, walk, hit, surface, materialOf(scene, surface), enters)) continue;
+        SurfacePart part = partOf(scene, surface);
+        if (part.material.type == kMaterialMetal) part.material.type = 0u;  // what it mirrors is about as bright
+        vec3 sun = sunFraction(view, scene, part, counts);
+        vec3 indirect = indirectOf(view, scene, part, key, counts);
+        return walk.through * radianceFrom(view, part, -ray.direction, sun, indirect);
     }
     return vec3(0.0);
 }
