@@ -1,5 +1,6 @@
 // The interactive viewer without its window: what is loaded, what commands do, what happens when files
 // change.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <atomic>
@@ -286,6 +287,33 @@ TEST_F(SessionTest, NeitherAnotherFileNorTheEndWaitsForAFileThatIsRead) {
     for (int i = 0; i < 1000 && backgroundThreads() > 0; ++i)
         std::this_thread::sleep_for(std::chrono::milliseconds(5));
     EXPECT_EQ(gate->done, 2);
+}
+
+// Two boxes 20 cm apart, 5,200 km from the origin: single precision alone would let them touch.
+TEST_F(SessionTest, FarFromTheOriginAllLooksAsItDoesNearby) {
+    write("a.pf_vox", box(2));
+    const auto sceneAt = [&](const char* name, const glm::dvec3& at) {
+        const auto model = [&](double x) {
+            return fmt::format("[[models]]\npath = 'a.pf_vox'\ntranslateVec = [{}, {}, {}]\n", at.x + x, at.y,
+                               at.z);
+        };
+        writeText(folder / name, model(0.0) + model(0.4));
+        start({.path = folder / name,
+               .camera = {.camera = ViewCamera{.position = at + glm::dvec3{0.3, 0.5, 1.5},
+                                               .target = at + glm::dvec3{0.3, 0.1, 0.1}},
+                          .name = {}}});
+        return drawn();
+    };
+    const Picture near = sceneAt("near.toml", glm::dvec3(0.0));
+    const glm::dvec3 away{256.0 * 20313, 0.0, -256.0 * 11719};
+    const Picture far = sceneAt("far.toml", away);
+    EXPECT_EQ(session->document.shown()->scene.origin(), away);
+    EXPECT_LE(compare(near, far).pixels, 2u) << "doubles round too";
+    session->view.pickAt({0.5, 0.5});
+    EXPECT_FALSE(session->view.pick()) << "between the boxes";
+    session->view.pickAt({0.56, 0.5});
+    ASSERT_TRUE(session->view.pick());
+    EXPECT_NEAR(session->view.pick()->point.x - away.x, 0.4, 0.2);
 }
 
 TEST_F(SessionTest, ProbesBesideTheSceneLightItAndAreReadAgain) {

@@ -218,5 +218,21 @@ TEST(ProbeGridFit, StepsThatAreTooSmallAreRefused) {
     EXPECT_THAT(grid.error().message, ::testing::HasSubstr("raise probeGridStep"));
 }
 
+TEST(ScenePlacement, TheOriginMovesOnlyFarAway) {
+    const auto at = [](double x, double size) {
+        return frameOrigin({.min = {x, 0, 0}, .max = {x + size, size, size}});
+    };
+    EXPECT_EQ(frameOrigin({}), glm::dvec3(0.0));
+    EXPECT_EQ(at(900.0, 10.0), glm::dvec3(0.0)) << "near";
+    EXPECT_EQ(at(1500.0, 1000.0), glm::dvec3(0.0)) << "as large as far away";
+    EXPECT_EQ(at(5.2e6, 10.0), glm::dvec3(256.0 * 20313, 0, 0)) << "a multiple of 256 m";
+    DiagnosticList diagnostics;
+    const WorldBounds far{.min = {5.2e6, 0, 0}, .max = {5.2e6 + 16, 8, 8}};
+    const auto grid = fitProbeGrid({}, far, diagnostics);
+    ASSERT_TRUE(grid);
+    EXPECT_EQ(grid->worldOf(grid->pointOf(1)) - grid->worldOf(grid->pointOf(0)), glm::dvec3(2, 0, 0));
+    EXPECT_LT(glm::length(grid->start), 128.0f);
+}
+
 }  // namespace
 }  // namespace pfvox::test

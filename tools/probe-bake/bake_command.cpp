@@ -121,8 +121,9 @@ Result<void> checkGrid(const LoadedScene& scene) {
     if (scene.bounds.empty())
         return fail(ErrorCode::NothingToConvert, "the scene has no visible voxel: nothing to bake");
     const ProbeGrid& grid = scene.probes;
-    const glm::dvec3 low{grid.start - grid.step};
-    const glm::dvec3 high{grid.pointOf(static_cast<std::uint32_t>(grid.probeCount() - 1)) + grid.step};
+    const glm::dvec3 low = grid.worldOf(grid.start - grid.step);
+    const glm::dvec3 high =
+        grid.worldOf(grid.pointOf(static_cast<std::uint32_t>(grid.probeCount() - 1)) + grid.step);
     const bool apart =
         glm::any(glm::greaterThan(low, scene.bounds.max)) || glm::any(glm::lessThan(high, scene.bounds.min));
     if (!apart) return {};

@@ -139,7 +139,7 @@ std::string probeTable(const ProbeFileInfo& info, std::size_t maxRows) {
     const std::size_t shown = std::min(info.probes.size(), maxRows);
     for (std::size_t i = 0; i < shown; ++i) {
         const ProbeStatistics& counted = info.probes[i];
-        const glm::vec3 at = info.positions[i];
+        const glm::dvec3 at = info.positions[i];
         const auto& mean = counted.meanIndirect;
         table.addRow({std::to_string(info.field.range.first + i),
                       fmt::format("{:.2f} {:.2f} {:.2f}", at.x, at.y, at.z),
@@ -182,13 +182,14 @@ std::string samplesText(const ProbeBakeSettings& settings) {
 std::string headline(const ProbeFileInfo& info) {
     const ProbeFieldInfo& field = info.field;
     const ProbeGrid& grid = field.grid;
+    const glm::dvec3 start = grid.worldOf(grid.start);
     const ProbeBakeSettings& settings = field.settings;
     std::string text = fmt::format("PF_PROBE {}.{}, {}, profile {}, content key {}\n", kPfProbeVersionMajor,
                                    info.versionMinor, formatBytes(info.fileBytes),
                                    toString(profileOf(field.resolution)), info.contentKey.hex());
     text += fmt::format("  grid {} x {} x {} from {:.2f} {:.2f} {:.2f} m, step {:.2f} {:.2f} {:.2f} m\n",
-                        grid.counts.x, grid.counts.y, grid.counts.z, grid.start.x, grid.start.y, grid.start.z,
-                        grid.step.x, grid.step.y, grid.step.z);
+                        grid.counts.x, grid.counts.y, grid.counts.z, start.x, start.y, start.z, grid.step.x,
+                        grid.step.y, grid.step.z);
     if (!field.isWhole())
         text += fmt::format("  a shard: probes {} to {}\n", field.range.first, field.range.end - 1);
     text += fmt::format("  {}, --seed {}, by {} on {}\n", samplesText(settings), settings.seed,
@@ -223,7 +224,7 @@ Result<ProbeFileInfo> readProbeFileInfo(const std::filesystem::path& file, const
     }
     for (std::uint32_t probe = info.field.range.first; probe < info.field.range.end; ++probe) {
         info.records.push_back(reader.record(probe));
-        info.positions.push_back(reader.positionOf(probe));
+        info.positions.push_back(info.field.grid.worldOf(reader.positionOf(probe)));
     }
     PFVOX_TRY(std::vector<ProbeStatistics>, statistics, allStatistics(reader));
     info.probes = std::move(statistics);
@@ -249,7 +250,7 @@ Json infoJson(const ProbeFileInfo& info) {
     json["formatVersion"] = fmt::format("{}.{}", kPfProbeVersionMajor, info.versionMinor);
     json["fileBytes"] = info.fileBytes;
     json["contentKey"] = info.contentKey.hex();
-    json["grid"] = {{"start", vectorJson(field.grid.start)},
+    json["grid"] = {{"start", vectorJson(field.grid.worldOf(field.grid.start))},
                     {"step", vectorJson(field.grid.step)},
                     {"counts", vectorJson(field.grid.counts)}};
     json["range"] = {{"first", field.range.first}, {"end", field.range.end}};

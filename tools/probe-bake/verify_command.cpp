@@ -125,11 +125,13 @@ class VerifyRun {
         PFVOX_TRY(const ProbeFileReader, reader,
                   ProbeFileReader::open(options_.inputs[1], limits_, diagnostics));
         PFVOX_TRY(gpu::Device, device, gpu::Device::open({.selector = options_.device}));
-        PFVOX_TRY(const gpu::Scene, scene, gpu::Scene::build(device, gpu::partsOf(loaded), diagnostics));
-        PFVOX_TRY(
-            const gpu::GpuProbes, probes,
-            gpu::GpuProbes::upload(device, reader,
-                                   {.voxelMetres = voxelMetresOf(loaded), .compactOnly = options_.compact}));
+        PFVOX_TRY(const gpu::Scene, scene,
+                  gpu::Scene::build(device, gpu::partsOf(loaded), diagnostics, nullptr, loaded.origin()));
+        PFVOX_TRY(const gpu::GpuProbes, probes,
+                  gpu::GpuProbes::upload(device, reader,
+                                         {.voxelMetres = voxelMetresOf(loaded),
+                                          .origin = scene.origin(),
+                                          .compactOnly = options_.compact}));
         PFVOX_TRY(const ProbeVerifier, verifier, ProbeVerifier::create(device));
         const std::uint32_t bounces = reader.info().settings.maxBounces.value_or(kUnlimitedBounces);
         const VerifySettings settings{.width = size_.x,

@@ -102,7 +102,8 @@ void Document::takeLoaded() {
 }
 
 Result<void> Document::show(OpenPath path, LoadedScene loaded, bool keepCamera) {
-    PFVOX_TRY(gpu::Scene, scene, gpu::Scene::build(*device_, gpu::partsOf(loaded), *log_));
+    PFVOX_TRY(gpu::Scene, scene,
+              gpu::Scene::build(*device_, gpu::partsOf(loaded), *log_, nullptr, loaded.origin()));
     if (!keepCamera) probes_.reset();
     emitters_.reset();
     std::vector<WorldBounds> boxes = assetBoxesOf(loaded);
@@ -189,10 +190,11 @@ void Document::followSavedFile() {
 }
 
 Result<void> Document::rearrange(LoadedScene loaded) {
+    const bool moved = loaded.origin() != shown_->scene.origin();
     const bool otherFiles = loaded.scene.models.size() != shown_->loaded.scene.models.size();
     if (!sameModels(loaded, shown_->loaded)) {
         PFVOX_TRY(gpu::Scene, scene,
-                  gpu::Scene::build(*device_, gpu::partsOf(loaded), *log_, &shown_->scene));
+                  gpu::Scene::build(*device_, gpu::partsOf(loaded), *log_, &shown_->scene, loaded.origin()));
         shown_->scene = std::move(scene);
         emitters_.reset();
         ++revisions_.pixels;
@@ -200,6 +202,7 @@ Result<void> Document::rearrange(LoadedScene loaded) {
     shown_->assetBoxes = assetBoxesOf(loaded);
     shown_->loaded = std::move(loaded);
     if (otherFiles) watchFiles(shown_->loaded.scene);
+    if (moved) findProbesOf(*shown_);  // theirs count from another place now
     return {};
 }
 
@@ -248,8 +251,8 @@ bool Document::showsSingleModel() const {
 glm::dvec3 Document::placeOfProbe(std::uint32_t index) const {
     const bool sameGrid =
         probes_ && probes_->info.grid == shown_->loaded.probes && index < probes_->probes.size();
-    return sameGrid ? glm::dvec3(probes_->probes[index].position)
-                    : glm::dvec3(shown_->loaded.probes.pointOf(index));
+    return sameGrid ? probes_->probes[index].position
+                    : shown_->loaded.probes.worldOf(shown_->loaded.probes.pointOf(index));
 }
 
 double Document::fileVoxelOfSelected() const {

@@ -21,7 +21,7 @@ gpu::GpuRay rayThrough(const ViewCamera& camera, glm::dvec2 parts, double aspect
     const glm::dvec2 plane = 2.0 * parts - 1.0;
     const glm::dvec3 direction =
         frame.forward + plane.x * tanY * aspect * frame.right - plane.y * tanY * frame.up;
-    return {.origin = glm::vec3(camera.position), .direction = glm::vec3(glm::normalize(direction))};
+    return {.origin = camera.position, .direction = glm::vec3(glm::normalize(direction))};
 }
 
 std::optional<Pick> describePick(const LoadedScene& scene, const gpu::GpuRay& ray, const gpu::GpuHit& hit) {
@@ -46,7 +46,7 @@ std::optional<Pick> describePick(const LoadedScene& scene, const gpu::GpuRay& ra
                         .baseColor = m.baseColor,
                         .voxel = hit.voxel,
                         .distanceMetres = static_cast<double>(hit.t),
-                        .point = glm::dvec3(ray.origin + hit.t * ray.direction)};
+                        .point = ray.origin + static_cast<double>(hit.t) * glm::dvec3(ray.direction)};
         }
         instance -= asset.instances.size();
     }
@@ -54,7 +54,7 @@ std::optional<Pick> describePick(const LoadedScene& scene, const gpu::GpuRay& ra
 }
 
 std::uint32_t nearestProbe(const ProbeGrid& grid, const glm::dvec3& point) {
-    const glm::dvec3 steps = glm::round((point - glm::dvec3(grid.start)) / glm::dvec3(grid.step));
+    const glm::dvec3 steps = glm::round((point - grid.worldOf(grid.start)) / glm::dvec3(grid.step));
     return grid.indexOf(glm::uvec3(glm::clamp(steps, glm::dvec3(0.0), glm::dvec3(grid.counts) - 1.0)));
 }
 

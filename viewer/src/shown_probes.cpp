@@ -38,7 +38,8 @@ Error withRemedy(Error error, const fs::path& file, const fs::path& scene) {
 std::vector<ShownProbe> listOf(const ProbeFileReader& reader) {
     std::vector<ShownProbe> probes;
     for (std::uint32_t i = reader.info().range.first; i < reader.info().range.end; ++i)
-        probes.push_back({.position = reader.positionOf(i), .record = reader.record(i)});
+        probes.push_back(
+            {.position = reader.info().grid.worldOf(reader.positionOf(i)), .record = reader.record(i)});
     return probes;
 }
 
@@ -79,8 +80,8 @@ Result<ShownProbes> openProbes(gpu::Device& device, const fs::path& file, const 
                                const fs::path& sceneFile, Diagnostics& diagnostics) {
     const Result<ProbeFileReader> reader = ProbeFileReader::open(file, Limits{}, diagnostics);
     if (!reader) return tl::make_unexpected(withRemedy(reader.error(), file, sceneFile));
-    Result<gpu::GpuProbes> field =
-        gpu::GpuProbes::upload(device, *reader, {.voxelMetres = voxelMetresOf(scene)});
+    Result<gpu::GpuProbes> field = gpu::GpuProbes::upload(
+        device, *reader, {.voxelMetres = voxelMetresOf(scene), .origin = scene.origin()});
     if (!field) return tl::make_unexpected(withRemedy(field.error(), file, sceneFile));
     ShownProbes shown{.file = file,
                       .info = reader->info(),

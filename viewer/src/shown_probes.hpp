@@ -17,7 +17,7 @@ namespace pfvox::viewer {
 
 /// One probe of the field, by index in the grid.
 struct ShownProbe {
-    glm::vec3 position{0.0f};  ///< metres, offset counted
+    glm::dvec3 position{0.0};  ///< in the world, metres, offset counted
     ProbeRecord record;
 };
 

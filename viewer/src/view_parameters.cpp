@@ -18,7 +18,7 @@ glm::vec4 groundUnder(const PictureInput& input, const PictureSettings& settings
     const gpu::WorldBox& box = input.scene.bounds();
     if (!hasGround(input, settings)) return glm::vec4(0.0f);
     const glm::dvec3 middle = 0.5 * (box.min + box.max);
-    return {middle.x, box.min.y, middle.z, kGroundRadius * diagonal};
+    return {input.scene.onDevice({middle.x, box.min.y, middle.z}), kGroundRadius * diagonal};
 }
 
 std::uint64_t joined(glm::uvec2 words) {
@@ -41,7 +41,7 @@ shared::ViewParameters viewParametersOf(const ViewCamera& camera, const PictureS
     const double diagonal = box.empty() ? 0.0 : glm::length(box.max - box.min);
     const glm::vec4 ground = groundUnder(input, settings, diagonal);
     const GpuEmitters* const emitters = input.emitters;
-    return {.cameraPosition = glm::vec3(camera.position),
+    return {.cameraPosition = input.scene.onDevice(camera.position),
             .width = settings.width,
             .cameraForward = glm::vec3(frame.forward),
             .height = settings.height,

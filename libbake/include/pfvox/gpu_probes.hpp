@@ -16,6 +16,7 @@ namespace pfvox::gpu {
 /// What of a probe file goes to the device.
 struct GpuProbeSettings {
     float voxelMetres = 0.1f;  ///< edge of a voxel of the scene: what offsets are measured in
+    glm::dvec3 origin{0.0};    ///< of the device's frame, in the world: gpu::Scene::origin()
     bool compactOnly = false;  ///< leave depth and light maps out: for pictures of the compact layers alone
 };
 /// What the probes take there.

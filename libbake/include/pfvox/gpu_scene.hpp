@@ -66,12 +66,18 @@ class Scene {
     /// Models that `known` has on this device are shared with it instead of laid out and uploaded again, as
     /// long as their materials begin at the same place of the scene's list: moving, adding and copying cost
     /// instances and BVH only. The assets that `known` was built from must still be there.
+    ///
+    /// What is on the device counts from `origin` (LoadedScene::origin), so that voxels far away from the
+    /// world's are told apart: whoever uploads positions subtracts it in double precision first.
     static Result<Scene> build(Device& device, std::span<const ScenePart> parts, Diagnostics& diagnostics,
-                               const Scene* known = nullptr);
+                               const Scene* known = nullptr, const glm::dvec3& origin = glm::dvec3(0.0));
 
     /// Device address of the shared::SceneHeader.
     glm::uvec2 address() const { return table_.addressWords(); }
-    const WorldBox& bounds() const { return bounds_; }                 ///< world space, metres
+    const WorldBox& bounds() const { return bounds_; }    ///< world space, metres
+    const glm::dvec3& origin() const { return origin_; }  ///< of the device's frame, in the world
+    /// As the device counts.
+    glm::vec3 onDevice(const glm::dvec3& world) const { return glm::vec3(world - origin_); }
     const SceneStatistics& statistics() const { return statistics_; }  ///< fixed after build()
 
   private:
@@ -83,6 +89,7 @@ class Scene {
     Buffer table_;         ///< header, BVH, instances, models, materials
     PlacedModels models_;  ///< and the blocks of their regions and top trees
     WorldBox bounds_;
+    glm::dvec3 origin_{0.0};
     SceneStatistics statistics_;
 };
 

@@ -13,7 +13,7 @@ namespace pfvox::gpu {
 
 /// Any non-zero direction; distances count in its lengths.
 struct GpuRay {
-    glm::vec3 origin{0.0f};                          ///< metres
+    glm::dvec3 origin{0.0};                          ///< in the world, metres
     glm::vec3 direction{0.0f, 0.0f, -1.0f};          ///< any length but 0
     float tMax = std::numeric_limits<float>::max();  ///< in lengths of the direction
     float cone = 0.0f;  ///< width in parts of the distance: finer levels of detail are not told apart

@@ -47,7 +47,7 @@ class Baker {
           observer_(observer),
           diagnostics_(diagnostics),
           info_(fieldInfo(scene, settings, device.info())),
-          models_(placedModels(scene)),
+          models_(placedModels(scene, scene.origin())),
           solids_(models_) {}
 
     Result<BakeReport> run(const std::filesystem::path& output) {
@@ -59,7 +59,8 @@ class Baker {
         warnAboutGrid();
         const EmitterList emitters = makeEmitters(models_);
         report_.emitterFaces = emitters.faces.size();
-        PFVOX_TRY(const gpu::Scene, gpuScene, gpu::Scene::build(device_, gpu::partsOf(scene_), diagnostics_));
+        PFVOX_TRY(const gpu::Scene, gpuScene,
+                  gpu::Scene::build(device_, gpu::partsOf(scene_), diagnostics_, nullptr, scene_.origin()));
         PFVOX_TRY(ProbeTracer, tracer,
                   ProbeTracer::create(device_, gpuScene,
                                       {.sun = scene_.scene.sun,
@@ -106,7 +107,8 @@ class Baker {
         const glm::dvec3 low(info_.grid.start - kProximityReach * info_.grid.step);
         const glm::dvec3 high(info_.grid.pointOf(static_cast<std::uint32_t>(info_.grid.probeCount() - 1)) +
                               kProximityReach * info_.grid.step);
-        const glm::dvec3 outside = glm::max(low - scene_.bounds.min, scene_.bounds.max - high);
+        const glm::dvec3 outside =
+            glm::max(low - (scene_.bounds.min - scene_.origin()), scene_.bounds.max - scene_.origin() - high);
         const double most = std::max({outside.x, outside.y, outside.z});
         if (most <= 1e-6) return;
         diagnostics_.warn(

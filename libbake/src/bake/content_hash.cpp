@@ -125,6 +125,7 @@ std::string deviceName(const gpu::DeviceInfo& device) {
 ContentKey fieldHash(const ProbeFieldInfo& info) {
     Hasher hasher;
     hasher.add(kBakeVersion).add(info.sceneHash).add(info.shaderHash).add(std::string_view(info.deviceName));
+    if (info.grid.origin != glm::dvec3(0.0)) hasher.add(info.grid.origin);
     hasher.add(info.grid.start).add(info.grid.step).add(info.grid.counts);
     const ProbeResolution& r = info.resolution;
     hasher.add(r.depth).add(r.light).add(r.irradiance).add(r.moments);
@@ -156,8 +157,8 @@ ProbeFieldInfo fieldInfo(const LoadedScene& scene, const BakeSettings& settings,
     glm::vec3 low = scene.probes.start - 0.5f * scene.probes.step;
     glm::vec3 high = gridEnd + 0.5f * scene.probes.step;
     if (!scene.bounds.empty()) {
-        low = glm::min(low, glm::vec3(scene.bounds.min));
-        high = glm::max(high, glm::vec3(scene.bounds.max));
+        low = glm::min(low, glm::vec3(scene.bounds.min - scene.origin()));
+        high = glm::max(high, glm::vec3(scene.bounds.max - scene.origin()));
     }
     info.depth = depthEncodingFor(low, high);
     info.lightContent = kLightOfSky | kLightOfEmitters | kLightOfBouncedSun | kLightOfSpecular;

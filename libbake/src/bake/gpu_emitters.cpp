@@ -17,7 +17,7 @@ constexpr std::size_t kMostFaces = 1 << 22;  // 256 MiB
 Result<GpuEmitters> GpuEmitters::upload(gpu::Device& device, const LoadedScene& scene,
                                         Diagnostics& diagnostics) {
     GpuEmitters emitters;
-    const bake::EmitterList list = bake::makeEmitters(bake::placedModels(scene));
+    const bake::EmitterList list = bake::makeEmitters(bake::placedModels(scene, scene.origin()));
     if (list.faces.empty()) return emitters;
     if (list.faces.size() > kMostFaces) {
         diagnostics.warn(

@@ -17,14 +17,15 @@ bool isFinite(const Affine& m) {
 
 }  // namespace
 
-std::vector<PlacedModel> placedModels(const LoadedScene& scene) {
+std::vector<PlacedModel> placedModels(const LoadedScene& scene, const glm::dvec3& origin) {
     std::vector<PlacedModel> placed;
     for (const PlacedAsset& part : scene.parts) {
         for (const Instance& instance : part.asset->instances) {
             if (isHidden(*part.asset, instance) || instance.model >= part.asset->models.size()) continue;
             const OctreeModel& model = part.asset->models[instance.model];
             if (model.regions.empty()) continue;
-            const Affine world = compose(part.worldFromAsset, instance.worldFromModel);
+            Affine world = compose(part.worldFromAsset, instance.worldFromModel);
+            world[3] -= origin;
             const Affine inverse{glm::inverse(glm::dmat4{world})};
             if (!isFinite(inverse)) continue;
             placed.push_back({&model, part.asset.get(), world, inverse});

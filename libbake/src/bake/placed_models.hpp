@@ -10,11 +10,11 @@ namespace pfvox::bake {
 struct PlacedModel {
     const OctreeModel* model = nullptr;
     const OctreeAsset* asset = nullptr;
-    Affine worldFromModel = identityAffine();  ///< voxels to metres
+    Affine worldFromModel = identityAffine();  ///< voxels to metres, from the origin that was asked for on
     Affine modelFromWorld = identityAffine();
 };
 
-std::vector<PlacedModel> placedModels(const LoadedScene& scene);
+std::vector<PlacedModel> placedModels(const LoadedScene& scene, const glm::dvec3& origin = glm::dvec3(0.0));
 
 /// The shortest edge of a voxel in the world; 0 without models.
 float finestVoxelMetres(const std::vector<PlacedModel>& models);

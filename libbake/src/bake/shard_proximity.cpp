@@ -48,7 +48,7 @@ Result<ProximityBuild> proximityOfShards(const LoadedScene& scene, std::span<con
     const ProximityGrid shape =
         bake::proximityShape(info.grid, scene.scene.probes.proximityCells, scene.bounds);
     const CellSurfaces surfaces =
-        sortIntoCells(bake::surfaceSamples(bake::placedModels(scene), shape), shape);
+        sortIntoCells(bake::surfaceSamples(bake::placedModels(scene, info.grid.origin), shape), shape);
     return buildProximityGrid(
         {.info = info, .records = records, .depthNormal = depthNormal, .shape = shape, .surfaces = surfaces});
 }

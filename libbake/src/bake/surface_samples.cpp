@@ -81,8 +81,10 @@ ProximityGrid proximityShape(const ProbeGrid& probes, const glm::uvec3& cells, c
     glm::vec3 low = probes.start - kProximityReach * probes.step;
     glm::vec3 high = probes.start + (glm::vec3(probes.counts - 1u) + kProximityReach) * probes.step;
     if (!surfaces.empty()) {
-        const glm::vec3 tightLow = glm::max(low, glm::vec3(surfaces.min) - kMargin * probes.step);
-        const glm::vec3 tightHigh = glm::min(high, glm::vec3(surfaces.max) + kMargin * probes.step);
+        const glm::vec3 tightLow =
+            glm::max(low, glm::vec3(surfaces.min - probes.origin) - kMargin * probes.step);
+        const glm::vec3 tightHigh =
+            glm::min(high, glm::vec3(surfaces.max - probes.origin) + kMargin * probes.step);
         if (glm::all(glm::lessThan(tightLow, tightHigh))) {
             low = tightLow;
             high = tightHigh;

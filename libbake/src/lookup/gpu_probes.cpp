@@ -129,7 +129,8 @@ shared::ProbeFieldRecord recordOf(const ProbeFileReader& reader, const GpuProbeS
     const ProbeFieldInfo& info = reader.info();
     const ProbeResolution& resolution = info.resolution;
     shared::ProbeFieldRecord record{};
-    record.start = info.grid.start;
+    const glm::vec3 moved(info.grid.origin - settings.origin);
+    record.start = info.grid.start + moved;
     record.step = info.grid.step;
     record.counts = glm::ivec3{info.grid.counts};
     record.depthResolution = settings.compactOnly ? 0 : resolution.depth;
@@ -142,7 +143,7 @@ shared::ProbeFieldRecord recordOf(const ProbeFileReader& reader, const GpuProbeS
     record.depthScaleAndLogRange = {info.depth.scale,
                                     std::log(info.depth.scale * info.depth.farMetres + 1.0f)};
     if (const auto& proximity = reader.proximity(); proximity && !settings.compactOnly) {
-        record.cellStart = proximity->start;
+        record.cellStart = proximity->start + moved;
         record.cellStep = proximity->step;
         record.cellCounts = glm::ivec3{proximity->counts};
     }
@@ -154,7 +155,7 @@ Result<std::vector<shared::ProbeEntry>> uploadMaps(MapArena& arena, const ProbeF
     std::vector<shared::ProbeEntry> entries(reader.info().grid.probeCount());
     for (std::uint32_t i = 0; i < entries.size(); ++i) {
         shared::ProbeEntry& entry = entries[i];
-        entry.position = reader.positionOf(i);
+        entry.position = glm::vec3(reader.info().grid.worldOf(reader.positionOf(i)) - settings.origin);
         entry.isActive = reader.record(i).isActive() ? 1 : 0;
         if (entry.isActive == 0) continue;
         PFVOX_CHECK(arena.beginProbe());

@@ -189,9 +189,9 @@ class Scene::ModelPlacer {
 };
 
 Result<Scene> Scene::build(Device& device, std::span<const ScenePart> parts, Diagnostics& diagnostics,
-                           const Scene* known) {
+                           const Scene* known, const glm::dvec3& origin) {
     const auto started = std::chrono::steady_clock::now();
-    PFVOX_TRY(const SceneRecords, records, makeRecords(parts, diagnostics));
+    PFVOX_TRY(const SceneRecords, records, makeRecords(parts, origin, diagnostics));
     PFVOX_TRY(PlacedModels, placed, ModelPlacer(device, known).place(records.models));
     std::vector<shared::ModelRecord> models;
     SceneStatistics statistics;
@@ -221,6 +221,7 @@ Result<Scene> Scene::build(Device& device, std::span<const ScenePart> parts, Dia
 
     Scene scene(std::move(table), std::move(placed));
     scene.bounds_ = records.bounds;
+    scene.origin_ = origin;
     scene.statistics_ = statistics;
     return scene;
 }

@@ -9,8 +9,9 @@ namespace pfvox::gpu {
 
 namespace {
 
-shared::RayRecord recordOf(const GpuRay& ray) {
-    return {.origin = ray.origin, .tMax = ray.tMax, .direction = ray.direction, .cone = ray.cone};
+shared::RayRecord recordOf(const GpuRay& ray, const Scene& scene) {
+    return {
+        .origin = scene.onDevice(ray.origin), .tMax = ray.tMax, .direction = ray.direction, .cone = ray.cone};
 }
 
 GpuHit hitOf(const shared::HitRecord& record) {
@@ -39,7 +40,7 @@ Result<RayBatch> RayQuery::cast(Device& device, const Scene& scene, std::span<co
                                 RayMode mode) const {
     if (rays.empty()) return RayBatch{};
     std::vector<shared::RayRecord> records(rays.size());
-    std::ranges::transform(rays, records.begin(), recordOf);
+    std::ranges::transform(rays, records.begin(), [&](const GpuRay& ray) { return recordOf(ray, scene); });
     PFVOX_TRY(const Buffer, rayBuffer,
               device.createBuffer(records.size() * sizeof(shared::RayRecord), "rays"));
     PFVOX_TRY(const Buffer, hitBuffer,

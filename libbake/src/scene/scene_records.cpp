@@ -35,7 +35,7 @@ Affine voxelsFromCube(const OctreeModel& model) {
 }
 
 /// Corners are transformed in double and rounded away from the box.
-Box worldBoxOf(const VoxelBox& voxels, const Affine& worldFromModel, WorldBox& exact) {
+Box boxOf(const VoxelBox& voxels, const Affine& worldFromModel, const glm::dvec3& origin, WorldBox& exact) {
     WorldBox box;
     for (int corner = 0; corner < 8; ++corner) {
         const glm::dvec3 p((corner & 1) != 0 ? voxels.max.x : voxels.min.x,
@@ -49,17 +49,19 @@ Box worldBoxOf(const VoxelBox& voxels, const Affine& worldFromModel, WorldBox& e
     exact.max = glm::max(exact.max, box.max);
     Box rounded;
     for (int axis = 0; axis < 3; ++axis) {
-        const double slack = 1e-6 * (std::abs(box.min[axis]) + std::abs(box.max[axis]));
-        rounded.min[axis] = static_cast<float>(box.min[axis] - slack);
-        rounded.max[axis] = static_cast<float>(box.max[axis] + slack);
+        const double low = box.min[axis] - origin[axis];
+        const double high = box.max[axis] - origin[axis];
+        const double slack = 1e-6 * (std::abs(low) + std::abs(high));
+        rounded.min[axis] = static_cast<float>(low - slack);
+        rounded.max[axis] = static_cast<float>(high + slack);
     }
     return rounded;
 }
 
 class RecordMaker {
   public:
-    RecordMaker(SceneRecords& records, Diagnostics& diagnostics)
-        : records_(records), diagnostics_(diagnostics) {}
+    RecordMaker(SceneRecords& records, const glm::dvec3& origin, Diagnostics& diagnostics)
+        : records_(records), origin_(origin), diagnostics_(diagnostics) {}
 
     Result<void> add(const ScenePart& part) {
         const OctreeAsset& asset = *part.asset;
@@ -103,8 +105,9 @@ class RecordMaker {
     void addInstance(const pfvox::Instance& instance, const Affine& worldFromAsset, UsedModel used,
                      std::uint32_t id) {
         const Affine worldFromModel = compose(worldFromAsset, instance.worldFromModel);
-        const Affine worldFromCube = compose(worldFromModel, voxelsFromCube(*used.model));
-        const glm::dmat4 cubeFromWorld = glm::inverse(glm::dmat4(worldFromCube));
+        Affine frameFromCube = compose(worldFromModel, voxelsFromCube(*used.model));
+        frameFromCube[3] -= origin_;
+        const glm::dmat4 cubeFromWorld = glm::inverse(glm::dmat4(frameFromCube));
         bool finite = true;
         for (int column = 0; column < 4; ++column) {
             for (int row = 0; row < 3; ++row) finite &= std::abs(cubeFromWorld[column][row]) < 1e30;
@@ -126,7 +129,7 @@ class RecordMaker {
                               .id = id,
                               .reserved0 = 0,
                               .reserved1 = 0});
-        boxes_.push_back(worldBoxOf(used.model->bounds, worldFromModel, records_.bounds));
+        boxes_.push_back(boxOf(used.model->bounds, worldFromModel, origin_, records_.bounds));
     }
 
     std::uint32_t modelIndex(UsedModel used) {
@@ -137,6 +140,7 @@ class RecordMaker {
     }
 
     SceneRecords& records_;
+    glm::dvec3 origin_;
     Diagnostics& diagnostics_;
     std::unordered_map<const OctreeModel*, std::uint32_t> indexOf_;
     std::unordered_map<const OctreeAsset*, std::uint32_t> firstMaterialOf_;
@@ -147,9 +151,10 @@ class RecordMaker {
 
 }  // namespace
 
-Result<SceneRecords> makeRecords(std::span<const ScenePart> parts, Diagnostics& diagnostics) {
+Result<SceneRecords> makeRecords(std::span<const ScenePart> parts, const glm::dvec3& origin,
+                                 Diagnostics& diagnostics) {
     SceneRecords records;
-    RecordMaker maker(records, diagnostics);
+    RecordMaker maker(records, origin, diagnostics);
     for (const ScenePart& part : parts) PFVOX_CHECK(maker.add(part));
     maker.finish();
     return records;

@@ -21,11 +21,12 @@ struct SceneRecords {
     std::vector<shared::InstanceRecord> instances;  ///< in BVH order
     std::vector<shared::MaterialRecord> materials;
     std::vector<shared::BvhNode> bvhNodes;
-    WorldBox bounds;
+    WorldBox bounds;  ///< in the world; boxes and matrices count from the origin
 };
 
 /// Errors and diagnostics: see Scene::build.
-Result<SceneRecords> makeRecords(std::span<const ScenePart> parts, Diagnostics& diagnostics);
+Result<SceneRecords> makeRecords(std::span<const ScenePart> parts, const glm::dvec3& origin,
+                                 Diagnostics& diagnostics);
 
 /// All of a model's record but the address of its root block.
 shared::ModelRecord recordOf(const OctreeModel& model);

@@ -15,7 +15,7 @@ namespace {
 /// Work of one dispatch: short enough on slow devices.
 constexpr std::uint64_t kPathsPerDispatch = 1u << 16;
 
-shared::VerifyView viewOf(const Camera& camera, const VerifySettings& settings) {
+shared::VerifyView viewOf(const Camera& camera, const gpu::Scene& scene, const VerifySettings& settings) {
     const glm::dvec3 toTarget = camera.target - camera.position;
     const glm::dvec3 forward = glm::length(toTarget) > 0.0 ? glm::normalize(toTarget) : glm::dvec3{0, 0, -1};
     const bool vertical = std::abs(forward.y) > 1.0 - 1e-9;
@@ -23,7 +23,7 @@ shared::VerifyView viewOf(const Camera& camera, const VerifySettings& settings) 
     const glm::dvec3 right = glm::normalize(glm::cross(forward, about));
     const double tanY = std::tan(glm::radians(camera.fovYDegrees) / 2.0);
     const double aspect = static_cast<double>(settings.width) / settings.height;
-    return {.position = glm::vec3{camera.position},
+    return {.position = scene.onDevice(camera.position),
             .width = settings.width,
             .forward = glm::vec3{forward},
             .height = settings.height,
@@ -99,7 +99,7 @@ struct Canvas {
         PFVOX_TRY(gpu::Buffer, view, device.createBuffer(sizeof(shared::VerifyView), "verify view"));
         PFVOX_TRY(gpu::Buffer, pixels, device.createBuffer(bytes, "verify pixels"));
         PFVOX_CHECK(device.upload(scene, 0, gpu::bytesOf(bakeSceneOf(input, settings, lamps))));
-        PFVOX_CHECK(device.upload(view, 0, gpu::bytesOf(viewOf(input.camera, settings))));
+        PFVOX_CHECK(device.upload(view, 0, gpu::bytesOf(viewOf(input.camera, input.scene, settings))));
         const shared::VerifyPush push{.scene = scene.addressWords(),
                                       .field = input.probes.address(),
                                       .view = view.addressWords(),
@@ -142,7 +142,8 @@ Result<ReferencePicture> ProbeVerifier::trace(gpu::Device& device, const VerifyI
     PFVOX_ASSERT(begun.samples == 0 || (begun.even.size() == pixels && begun.odd.size() == pixels));
     if (begun.samples != 0 && begun.samples >= settings.samples) return begun;
     bake::EmitterList emitters;
-    if (settings.emitterSampling) emitters = bake::makeEmitters(bake::placedModels(input.loaded));
+    if (settings.emitterSampling)
+        emitters = bake::makeEmitters(bake::placedModels(input.loaded, input.scene.origin()));
     PFVOX_TRY(Canvas, canvas, Canvas::create(device, input, settings, emitters));
     std::vector<shared::VerifyPixel> sums(pixels);
     for (std::size_t i = 0; begun.samples != 0 && i < pixels; ++i) {

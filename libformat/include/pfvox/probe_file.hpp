@@ -49,7 +49,7 @@ class ProbeFileReader {
     const ProbeRecord& record(std::uint32_t probe) const;
     const ContentKey& inputHash(std::uint32_t probe) const;  ///< of what the probe was made from
     /// Where the probe stands, metres.
-    glm::vec3 positionOf(std::uint32_t probe) const;
+    glm::vec3 positionOf(std::uint32_t probe) const;  ///< counts from grid.origin
     /// Whether there is something to read: not for layers that the file does not have, nor for inactive
     /// probes.
     bool has(std::uint32_t probe, ProbeLayer layer) const;

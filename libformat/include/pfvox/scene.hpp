@@ -143,6 +143,11 @@ struct WorldBounds {
 /// Box of all visible instances.
 WorldBounds boundsOf(const OctreeAsset& asset, const Affine& worldFromAsset = identityAffine());
 
+/// Where single precision counts from: the origin of the world for all scenes that stand near it, else a
+/// point near the middle of the box, in multiples of 256 m. A float tells 1/16 m apart a thousand kilometers
+/// from its origin.
+glm::dvec3 frameOrigin(const WorldBounds& bounds);
+
 /// Fills what the request leaves out so that the grid encloses the box; with nothing given, the longest edge
 /// of the box has nine probes. Errors: LimitExceeded (kMaxProbesPerAxis, kMaxProbes). Diagnostics: the note
 /// scene-grid-smaller when the grid does not enclose the box, unless all of it was given.
@@ -163,6 +168,9 @@ struct LoadedScene {
     std::vector<PlacedAsset> parts;  ///< in the order of Scene::models; invisible ones are not loaded
     WorldBounds bounds;              ///< of all parts
     ProbeGrid probes;                ///< as asked for, or fitted
+
+    /// What devices count from: frameOrigin() of the bounds.
+    const glm::dvec3& origin() const { return probes.origin; }
 };
 
 /// Reads a scene (.toml) and every PF_VOX file that its visible models name, each file once. Any other file

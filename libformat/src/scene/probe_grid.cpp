@@ -23,6 +23,17 @@ double stepFor(double length, std::uint32_t count, double otherwise) {
 
 }  // namespace
 
+glm::dvec3 frameOrigin(const WorldBounds& bounds) {
+    constexpr double kNear = 1024.0;  // metres: a float tells 0.06 mm apart there
+    constexpr double kRaster = 256.0;
+    if (bounds.empty()) return glm::dvec3(0.0);
+    const glm::dvec3 middle = 0.5 * (bounds.min + bounds.max);
+    const double away = longestOf(glm::abs(middle));
+    // A scene that is as large as it is far away gains nothing.
+    if (away <= kNear || away <= 4.0 * longestOf(bounds.max - bounds.min)) return glm::dvec3(0.0);
+    return kRaster * glm::round(middle / kRaster);
+}
+
 Result<ProbeGrid> fitProbeGrid(const ProbeGridRequest& request, const WorldBounds& bounds,
                                Diagnostics& diagnostics) {
     const glm::dvec3 low = bounds.empty() ? glm::dvec3(0.0) : bounds.min;
@@ -55,7 +66,8 @@ Result<ProbeGrid> fitProbeGrid(const ProbeGridRequest& request, const WorldBound
     const bool asGiven = request.position && request.stepMetres && request.count;
     if (!encloses && !asGiven)
         diagnostics.note("scene-grid-smaller", "the probe grid does not enclose all models");
-    return ProbeGrid{.start = start, .step = step, .counts = glm::uvec3(wanted)};
+    const glm::dvec3 origin = frameOrigin(bounds);
+    return ProbeGrid{.origin = origin, .start = start - origin, .step = step, .counts = glm::uvec3(wanted)};
 }
 
 }  // namespace pfvox

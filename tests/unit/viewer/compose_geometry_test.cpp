@@ -173,5 +173,13 @@ TEST(ModelDrag, ADragIsOneStepFromWhereItBegan) {
     EXPECT_FALSE(editor.canUndo());
 }
 
+TEST(ComposeGeometry, GridsAreWrittenInTheFewestDigits) {
+    const ProbeGrid grid{.start = glm::vec3(-3.6f, 0.1f, 0.0f), .step = glm::vec3(0.7f), .counts = {2, 3, 4}};
+    const ProbeGridRequest request = requestOf(grid, glm::uvec3(64));
+    EXPECT_EQ(request.position, glm::dvec3(-3.6, 0.1, 0.0));
+    EXPECT_EQ(request.stepMetres, glm::dvec3(0.7));
+    EXPECT_EQ(request.count, glm::uvec3(2, 3, 4));
+}
+
 }  // namespace
 }  // namespace pfvox::test

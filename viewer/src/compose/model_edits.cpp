@@ -1,5 +1,7 @@
 #include "compose/model_edits.hpp"
 
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <numbers>
@@ -61,6 +63,24 @@ SceneModel resized(SceneModel model, const Resize& resize) {
     }
     model.translateMetres = resize.center + resize.factor * (model.translateMetres - resize.center);
     return model;
+}
+
+ProbeGridRequest requestOf(const ProbeGrid& grid, const glm::uvec3& proximityCells) {
+    // A double of the float -3.6 is -3.6000001430511475; of its shortest decimal it is what the user would
+    // write.
+    const auto decimals = [](const glm::vec3& v) {
+        glm::dvec3 exact;
+        for (int axis = 0; axis < 3; ++axis) {
+            std::array<char, 32> text{};
+            const auto end = std::to_chars(text.data(), text.data() + text.size(), v[axis]).ptr;
+            std::from_chars(text.data(), end, exact[axis]);
+        }
+        return exact;
+    };
+    return {.position = grid.origin + decimals(grid.start),
+            .stepMetres = decimals(grid.step),
+            .count = grid.counts,
+            .proximityCells = proximityCells};
 }
 
 }  // namespace pfvox::viewer

@@ -25,4 +25,8 @@ SceneModel resized(SceneModel model, const Resize& resize);
 /// `rotate`.
 glm::dvec3 turnedAngles(const glm::dvec3& rotateRadians, double radians);
 
+/// A grid as a request that gives all of it, in the fewest digits that stand for its single-precision
+/// numbers.
+ProbeGridRequest requestOf(const ProbeGrid& grid, const glm::uvec3& proximityCells);
+
 }  // namespace pfvox::viewer

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "compose/model_edits.hpp"
 #include "window/panels.hpp"
 #include "window/widgets.hpp"
 
@@ -22,11 +23,7 @@ void fitToScene(Document& document) {
     const Result<ProbeGrid> grid =
         fitProbeGrid({.stepMetres = now.stepMetres}, loaded.bounds, document.log());
     if (!grid) return document.log().addError(describe(grid.error()));
-    ProbeGridRequest fitted = now;
-    fitted.position = glm::dvec3(grid->start);
-    fitted.stepMetres = glm::dvec3(grid->step);
-    fitted.count = grid->counts;
-    document.composer.tell(document.composer.editor.setProbes(fitted));
+    document.composer.tell(document.composer.editor.setProbes(requestOf(*grid, now.proximityCells)));
 }
 
 std::string givenText(const ProbeGridRequest& probes) {
@@ -97,8 +94,9 @@ void drawProbeGrid(Document& document, View& view) {
     ProbeGridRequest probes = editor.scene().probes;
     ImGui::Checkbox("show the grid (G)", &view.settings.showProbeGrid);
     ImGui::PushItemWidth(-84.0f);
-    glm::dvec3 start = probes.position.value_or(glm::dvec3(grid.start));
-    glm::dvec3 step = probes.stepMetres.value_or(glm::dvec3(grid.step));
+    const ProbeGridRequest shown = requestOf(grid, probes.proximityCells);
+    glm::dvec3 start = probes.position.value_or(*shown.position);
+    glm::dvec3 step = probes.stepMetres.value_or(*shown.stepMetres);
     glm::uvec3 counts = probes.count.value_or(grid.counts);
     const auto set = [&](const char* gesture) { document.composer.tell(editor.setProbes(probes, gesture)); };
     if (dragVector("start (m)", start, {.speed = 0.02f}, editor)) {
