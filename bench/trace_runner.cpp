@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <pfvox_shaders/shaders.hpp>
+#include <pfvox_check_shaders/shaders.hpp>
 
 namespace pfvox::bench {
 

@@ -1,7 +1,7 @@
 # GLSL to SPIR-V at build time, embedded as C++ arrays: no shader file has to be found when a program runs.
 #
 # pfvox_compile_shaders(<target> INCLUDE_DIRS <dir>... SHADERS <name>=<file>...)
-#   Makes a static library <target> with the header <pfvox_shaders/shaders.hpp>, which declares for each shader
+#   Makes a static library <target> with the header <<target>/shaders.hpp>, which declares for each shader
 #   `extern const std::span<const std::uint32_t> <name>;` in namespace pfvox::shaders.
 #
 # pfvox_test_shaders(<target>)
@@ -13,7 +13,7 @@ set(_pfvox_embed_script ${CMAKE_CURRENT_LIST_DIR}/EmbedSpirv.cmake)
 
 function(pfvox_compile_shaders target)
   cmake_parse_arguments(ARG "" "" "INCLUDE_DIRS;SHADERS" ${ARGN})
-  set(out_dir ${CMAKE_CURRENT_BINARY_DIR}/generated/pfvox_shaders)
+  set(out_dir ${CMAKE_CURRENT_BINARY_DIR}/generated/${target})
   file(MAKE_DIRECTORY ${out_dir})
   list(TRANSFORM ARG_INCLUDE_DIRS PREPEND -I OUTPUT_VARIABLE include_flags)
 

@@ -3,7 +3,7 @@
 
 #include <numeric>
 #include <pfvox/gpu.hpp>
-#include <pfvox_shaders/shaders.hpp>
+#include <pfvox_check_shaders/shaders.hpp>
 
 #include "support/gpu_fixture.hpp"
 

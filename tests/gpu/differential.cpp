@@ -5,10 +5,10 @@
 #include <cmath>
 #include <pfvox/gpu_scene.hpp>
 #include <pfvox/ray_query.hpp>
-#include <pfvox/reference_caster.hpp>
 #include <sstream>
 
 #include "support/gpu_fixture.hpp"
+#include "support/reference_caster.hpp"
 
 namespace pfvox::test {
 

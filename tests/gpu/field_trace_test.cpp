@@ -1,7 +1,7 @@
 // Light-field tracing against the room that the probes have seen, which is traced analytically.
 #include <algorithm>
-#include <pfvox/probe_query.hpp>
 
+#include "support/probe_query.hpp"
 #include "support/room_field.hpp"
 
 namespace pfvox::test {

@@ -1,7 +1,7 @@
 // The structs of shaders/shared have the same bytes for C++ and for the shaders.
 #include <bit>
 #include <cstring>
-#include <pfvox_shaders/shaders.hpp>
+#include <pfvox_check_shaders/shaders.hpp>
 
 #include "shared/rays.glsl.h"
 #include "shared/scene.glsl.h"

@@ -1,9 +1,9 @@
 // The lookup of indirect light on the device: against known light, and against a slow twin for the compact
 // layer.
-#include <pfvox/probe_query.hpp>
 
 #include <numeric>
 
+#include "support/probe_query.hpp"
 #include "support/room_field.hpp"
 
 namespace pfvox::test {

@@ -1,7 +1,7 @@
 // The maths of probe maps as a shader computes it, against the same text compiled as C++.
 #include <bit>
 #include <cstring>
-#include <pfvox_shaders/shaders.hpp>
+#include <pfvox_check_shaders/shaders.hpp>
 #include <random>
 
 #include "shared/probe_maths_check.glsl.h"

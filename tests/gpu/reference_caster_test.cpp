@@ -2,9 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <pfvox/reference_caster.hpp>
 
 #include "support/procedural.hpp"
+#include "support/reference_caster.hpp"
 
 namespace pfvox::test {
 namespace {

@@ -1,8 +1,8 @@
 #include "support/reference_light.hpp"
+#include "support/reference_caster.hpp"
 
 #include <cmath>
 #include <numbers>
-#include <pfvox/reference_caster.hpp>
 
 #include "shared/color.glsl.h"
 #include "support/procedural.hpp"

@@ -1,11 +1,11 @@
 #include "support/reference_picture.hpp"
+#include "support/reference_caster.hpp"
 
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <pfvox/reference_caster.hpp>
 
 #include "shared/color.glsl.h"
 

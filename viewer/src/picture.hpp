@@ -9,8 +9,8 @@
 #include <memory>
 #include <pfvox/gpu.hpp>
 #include <pfvox/gpu_emitters.hpp>
+#include <pfvox/gpu_probes.hpp>
 #include <pfvox/gpu_scene.hpp>
-#include <pfvox/probe_query.hpp>
 #include <pfvox/scene.hpp>
 #include <vector>
 

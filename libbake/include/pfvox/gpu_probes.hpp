@@ -13,6 +13,13 @@
 #include <vector>
 
 namespace pfvox::gpu {
+
+/// Which step of the lookup gave most of a value.
+enum class ProbeTier : std::uint8_t { None, Texels, Traced, Compact, Nearest };
+inline constexpr std::size_t kProbeTierCount = 5;  ///< tiers of ProbeTier, None included
+/// "none", "texels", "traced", "compact", "nearest".
+std::string_view toString(ProbeTier tier);
+
 /// What of a probe file goes to the device.
 struct GpuProbeSettings {
     float voxelMetres = 0.1f;  ///< edge of a voxel of the scene: what offsets are measured in

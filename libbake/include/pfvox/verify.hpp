@@ -12,7 +12,6 @@
 #include <array>
 #include <pfvox/gpu_probes.hpp>
 #include <pfvox/gpu_scene.hpp>
-#include <pfvox/probe_query.hpp>
 #include <pfvox/scene.hpp>
 #include <vector>
 

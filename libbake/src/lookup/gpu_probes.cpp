@@ -179,6 +179,22 @@ Error withNeed(Error error, std::uint64_t neededBytes) {
 
 }  // namespace
 
+std::string_view toString(ProbeTier tier) {
+    switch (tier) {
+        case ProbeTier::None:
+            return "none";
+        case ProbeTier::Texels:
+            return "texels";
+        case ProbeTier::Traced:
+            return "traced";
+        case ProbeTier::Compact:
+            return "compact";
+        case ProbeTier::Nearest:
+            return "nearest";
+    }
+    return "unknown";
+}
+
 std::uint64_t GpuProbes::bytesOf(const ProbeFileReader& reader, const GpuProbeSettings& settings) {
     std::uint64_t bytes =
         sizeof(shared::ProbeFieldRecord) + reader.info().grid.probeCount() * sizeof(shared::ProbeEntry);

@@ -16,11 +16,6 @@ struct ProbePoint {
     glm::vec3 normal{0.0f, 1.0f, 0.0f};  ///< unit, on the side that is seen
 };
 
-/// Which step of the lookup gave most of a value.
-enum class ProbeTier : std::uint8_t { None, Texels, Traced, Compact, Nearest };
-inline constexpr std::size_t kProbeTierCount = 5;  ///< tiers of ProbeTier, None included
-/// "none", "texels", "traced", "compact", "nearest".
-std::string_view toString(ProbeTier tier);
 /// The light of a point, and where it came from.
 struct ProbeLookup {
     glm::vec3 indirect{0.0f};          ///< I = E / pi, linear RGB

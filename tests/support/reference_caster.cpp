@@ -1,7 +1,8 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <pfvox/reference_caster.hpp>
+
+#include "support/reference_caster.hpp"
 
 namespace pfvox {
 

@@ -1,6 +1,7 @@
+#include "support/probe_query.hpp"
+
 #include <algorithm>
-#include <pfvox/probe_query.hpp>
-#include <pfvox_shaders/shaders.hpp>
+#include <pfvox_check_shaders/shaders.hpp>
 
 #include "shared/probes.glsl.h"
 
@@ -38,22 +39,6 @@ std::uint32_t modeOf(FieldTracing tracing) {
 }
 
 }  // namespace
-
-std::string_view toString(ProbeTier tier) {
-    switch (tier) {
-        case ProbeTier::None:
-            return "none";
-        case ProbeTier::Texels:
-            return "texels";
-        case ProbeTier::Traced:
-            return "traced";
-        case ProbeTier::Compact:
-            return "compact";
-        case ProbeTier::Nearest:
-            return "nearest";
-    }
-    return "unknown";
-}
 
 Result<ProbeQuery> ProbeQuery::create(Device& device) {
     PFVOX_TRY(
