@@ -36,14 +36,14 @@ ProbeData makeMaps(const TracedProbe& traced, const MapSettings& settings) {
         for (const glm::vec3& light : storedLight(traced, settings)) data.light.push_back(packLight(light));
     }
     if (resolution.irradiance != 0)
-        data.irradiance = irradianceLayer({.resolution = traced.resolution.light, .texels = traced.leaving},
+        data.irradiance = irradianceLayer({.edge = traced.resolution.light, .texels = traced.leaving},
                                           resolution.irradiance);
     if (resolution.moments != 0) {
         std::vector<float> metres = traced.metres;
         for (float& distance : metres)
             if (distance < 0.0f) distance = std::numeric_limits<float>::infinity();
-        data.moments = momentsLayer({.resolution = traced.resolution.depth, .texels = metres},
-                                    settings.momentRange, resolution.moments);
+        data.moments = momentsLayer({.edge = traced.resolution.depth, .texels = metres}, settings.momentRange,
+                                    resolution.moments);
     }
     return data;
 }
