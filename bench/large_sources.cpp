@@ -1,12 +1,15 @@
 #include "large_sources.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <fstream>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "export/vox_writer.hpp"
 #include "noise.hpp"
-#include "vox_file_writer.hpp"
 
 namespace pfvox::bench {
 
@@ -15,6 +18,52 @@ namespace {
 constexpr int kModelEdge = 256;
 constexpr int kTerrainEdge = 2048;
 constexpr float kTerrainAmplitude = 120.0f;
+
+using vox_file::VoxVoxel;
+
+/// A scene of models that are only moved.
+class VoxScene {
+  public:
+    /// Returns the number of the model. Edges are at most 256.
+    int addModel(glm::ivec3 size, std::span<const VoxVoxel> voxels) {
+        file_.model({size.x, size.y, size.z}, voxels);
+        return models_++;
+    }
+    /// Places a model with its middle voxel at `translation`.
+    void addInstance(int model, glm::ivec3 t) {
+        const auto id = static_cast<int>(2 + 2 * children_.size());
+        children_.push_back(id);
+        const std::string place = std::to_string(t.x) + ' ' + std::to_string(t.y) + ' ' + std::to_string(t.z);
+        nodes_.transform({.id = id, .child = id + 1, .frames = {{{"_t", place}}}, .layer = 0});
+        nodes_.shape({.id = id + 1, .models = {{model, {}}}});
+    }
+    void write(const std::filesystem::path& path) {
+        if (!children_.empty()) file_.transform({.id = 0, .child = 1}).group(1, children_).append(nodes_);
+        finish(path);
+    }
+    /// With a graph that is one transform node, which is its own child: real files have such.
+    void writeWithSelfCycle(const std::filesystem::path& path) {
+        file_.transform({.id = 0, .child = 0});
+        finish(path);
+    }
+
+  private:
+    void finish(const std::filesystem::path& path) {
+        std::array<std::array<std::uint8_t, 4>, 256> palette;
+        for (std::uint32_t i = 0; i < 256; ++i)
+            palette[i] =
+                std::bit_cast<std::array<std::uint8_t, 4>>(0xff000000u | (i * 0x010306u + 0x102030u));
+        const std::string bytes = file_.palette(palette).finish();
+        std::ofstream out;
+        out.exceptions(std::ios::failbit | std::ios::badbit);
+        out.open(path, std::ios::binary | std::ios::trunc);
+        out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    }
+
+    vox_file::VoxWriter file_, nodes_;
+    int models_ = 0;
+    std::vector<std::int32_t> children_;
+};
 
 std::uint8_t colorAt(int x, int y, int z) {
     return static_cast<std::uint8_t>(1 + 4 * (hashOf(x >> 6, y >> 6, 0) % 16) + hashOf(x, y, z) % 4);
@@ -29,7 +78,7 @@ struct Column {
 /// A landscape as a grid of models of 256^3, those without voxels left out.
 template <class ColumnAt>
 void writeLandscape(const std::filesystem::path& file, int edge, int height, const ColumnAt& columnAt) {
-    VoxFileWriter writer(file);
+    VoxScene scene;
     std::vector<VoxVoxel> voxels;
     const auto modelAt = [&](glm::ivec3 corner) {
         voxels.clear();
@@ -45,13 +94,13 @@ void writeLandscape(const std::filesystem::path& file, int edge, int height, con
             }
         }
         if (voxels.empty()) return;
-        const int model = writer.addModel(glm::ivec3{kModelEdge}, voxels);
-        writer.addInstance(model, corner + kModelEdge / 2);
+        const int model = scene.addModel(glm::ivec3{kModelEdge}, voxels);
+        scene.addInstance(model, corner + kModelEdge / 2);
     };
     for (int z = 0; z < height; z += kModelEdge)
         for (int y = 0; y < edge; y += kModelEdge)
             for (int x = 0; x < edge; x += kModelEdge) modelAt({x, y, z});
-    writer.finish();
+    scene.write(file);
 }
 
 /// Heights of all columns of a landscape, made once.
@@ -105,9 +154,9 @@ void writeSmallFile(const std::filesystem::path& file, int seed) {
                 voxels.push_back({static_cast<std::uint8_t>(x), static_cast<std::uint8_t>(y),
                                   static_cast<std::uint8_t>(z), colorAt(8 * x, 8 * y, z)});
             }
-    VoxFileWriter writer(file);
-    writer.addInstance(writer.addModel(size, voxels), size / 2);
-    writer.finish();
+    VoxScene scene;
+    scene.addInstance(scene.addModel(size, voxels), size / 2);
+    scene.write(file);
 }
 
 std::string numbered(const std::string& name, int i) {
@@ -172,17 +221,17 @@ void writeSolidTerrain(const std::filesystem::path& file) {
 void writeInstances(const std::filesystem::path& file, int count) {
     constexpr int kModels = 12;
     constexpr int kStep = 40;
-    VoxFileWriter writer(file);
+    VoxScene scene;
     for (int kind = 0; kind < kModels; ++kind) {
         const glm::ivec3 size{16 + kind, 20 + (kind % 3) * 6, 24 + kind * 6};
-        writer.addModel(size, building(size, kind));
+        scene.addModel(size, building(size, kind));
     }
     const int row = static_cast<int>(std::ceil(std::sqrt(count)));
     for (int i = 0; i < count; ++i) {
         const int kind = static_cast<int>(hashOf(i, 5, 5) % kModels);
-        writer.addInstance(kind, {i % row * kStep, i / row * kStep, (24 + kind * 6) / 2});
+        scene.addInstance(kind, {i % row * kStep, i / row * kStep, (24 + kind * 6) / 2});
     }
-    writer.finish();
+    scene.write(file);
 }
 
 void writeSmallFiles(const std::filesystem::path& folder) {
@@ -208,9 +257,9 @@ void writeSelfCycles(const std::filesystem::path& folder) {
     constexpr int kFiles = 81;
     std::filesystem::create_directories(folder);
     for (int i = 0; i < kFiles; ++i) {
-        VoxFileWriter writer(folder / numbered("cycle", i));
-        writer.addModel({20, 21, 22}, building({20, 21, 22}, i % 12));
-        writer.finishWithSelfCycle();
+        VoxScene scene;
+        scene.addModel({20, 21, 22}, building({20, 21, 22}, i % 12));
+        scene.writeWithSelfCycle(folder / numbered("cycle", i));
     }
 }
 
@@ -227,9 +276,9 @@ void writeHalfPlanet(const std::filesystem::path& file) {
                 voxels.push_back({static_cast<std::uint8_t>(x), static_cast<std::uint8_t>(y),
                                   static_cast<std::uint8_t>(z), colorAt(x, y, z)});
             }
-    VoxFileWriter writer(file);
-    writer.addInstance(writer.addModel(glm::ivec3{kModelEdge}, voxels), {0, 0, 0});
-    writer.finish();
+    VoxScene scene;
+    scene.addInstance(scene.addModel(glm::ivec3{kModelEdge}, voxels), {0, 0, 0});
+    scene.write(file);
 }
 
 void writeMonument(const std::filesystem::path& file) {
@@ -243,17 +292,17 @@ void writeMonument(const std::filesystem::path& file) {
                 voxels.push_back({static_cast<std::uint8_t>(x), static_cast<std::uint8_t>(y),
                                   static_cast<std::uint8_t>(z), colorAt(4 * x, 4 * y, z)});
     }
-    VoxFileWriter writer(file);
-    writer.addInstance(writer.addModel({kBase, kBase, kHeight}, voxels), {0, 0, 0});
-    writer.finish();
+    VoxScene scene;
+    scene.addInstance(scene.addModel({kBase, kBase, kHeight}, voxels), {0, 0, 0});
+    scene.write(file);
 }
 
 void writeLiar(const std::filesystem::path& file) {
     // The size is a lie, the rest is in order: one voxel in a model.
     const VoxVoxel voxel{1, 2, 3, 4};
-    VoxFileWriter writer(file);
-    writer.addModel({65536, 65536, 1}, {&voxel, 1});
-    writer.finish();
+    VoxScene scene;
+    scene.addModel({65536, 65536, 1}, {&voxel, 1});
+    scene.write(file);
     std::filesystem::resize_file(file,
                                  64);  // within the palette, as such a file comes: the end is missing, too
 }

@@ -18,9 +18,9 @@ namespace {
 using namespace pfvox::demo;
 
 void writeFile(const std::filesystem::path& file, const VoxScene& scene, const Palette& palette) {
-    const std::vector<std::uint8_t> bytes = writeVox(scene, palette);
+    const std::string bytes = writeVox(scene, palette);
     std::ofstream stream(file, std::ios::binary);
-    for (const std::uint8_t byte : bytes) stream.put(static_cast<char>(byte));
+    stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
     stream.close();
     if (!stream) throw std::runtime_error("cannot write " + file.string());
     std::printf("%s: %zu models, %zu bytes\n", file.string().c_str(), scene.models.size(), bytes.size());

@@ -1,6 +1,9 @@
 #include "vox_writer.hpp"
 
+#include <array>
 #include <limits>
+
+#include "export/vox_writer.hpp"
 
 namespace pfvox::demo {
 
@@ -42,121 +45,64 @@ Node placeAtCorner(const std::string& name, int model, glm::ivec3 modelSize, glm
 
 namespace {
 
-constexpr std::int32_t kVersion = 150;
+using vox_file::VoxDict;
+using vox_file::VoxVoxel;
+using vox_file::VoxWriter;
 
-class Bytes {
-  public:
-    void int32(std::int32_t value) {
-        const auto bits = static_cast<std::uint32_t>(value);
-        for (unsigned shift = 0; shift < 32; shift += 8)
-            data.push_back(static_cast<std::uint8_t>(bits >> shift));
-    }
-    void text(const std::string& s) { data.insert(data.end(), s.begin(), s.end()); }
-    void string(const std::string& s) {
-        int32(static_cast<std::int32_t>(s.size()));
-        text(s);
-    }
-    void dict(const std::vector<std::pair<std::string, std::string>>& entries) {
-        int32(static_cast<std::int32_t>(entries.size()));
-        for (const auto& [key, value] : entries) {
-            string(key);
-            string(value);
-        }
-    }
-    void chunk(const std::string& id, const Bytes& content) {
-        text(id);
-        int32(static_cast<std::int32_t>(content.data.size()));
-        int32(0);
-        data.insert(data.end(), content.data.begin(), content.data.end());
-    }
-
-    std::vector<std::uint8_t> data;
-};
-
-void writeModel(Bytes& out, const Canvas& model) {
-    Bytes size;
-    for (int axis = 0; axis < 3; ++axis) size.int32(model.size()[axis]);
-    out.chunk("SIZE", size);
-
-    Bytes voxels;
-    std::int32_t count = 0;
+void writeModel(VoxWriter& out, const Canvas& model) {
+    std::vector<VoxVoxel> voxels;
     for (int z = 0; z < model.size().z; ++z) {
         for (int y = 0; y < model.size().y; ++y) {
             for (int x = 0; x < model.size().x; ++x) {
-                const std::uint8_t index = model.at({x, y, z});
-                if (index == 0) continue;
-                for (const int v : {x, y, z}) voxels.data.push_back(static_cast<std::uint8_t>(v));
-                voxels.data.push_back(index);
-                ++count;
+                const auto byte = [](int v) { return static_cast<std::uint8_t>(v); };
+                if (const std::uint8_t index = model.at({x, y, z}))
+                    voxels.push_back({byte(x), byte(y), byte(z), index});
             }
         }
     }
-    Bytes content;
-    content.int32(count);
-    content.data.insert(content.data.end(), voxels.data.begin(), voxels.data.end());
-    out.chunk("XYZI", content);
+    out.model({model.size().x, model.size().y, model.size().z}, voxels);
 }
 
 /// Numbers the nodes in the order in which MagicaVoxel does: parents first.
 class GraphWriter {
   public:
-    explicit GraphWriter(Bytes& out) : out_(out) {}
+    explicit GraphWriter(VoxWriter& out) : out_(out) {}
 
     void write(const std::vector<Node>& nodes) { transform(Node{.name = "", .children = nodes}, true); }
 
   private:
     void transform(const Node& node, bool isRoot) {
         const int id = nextId_++;
-        Bytes content;
-        content.int32(id);
-        content.dict(node.name.empty() ? Attributes{} : Attributes{{"_name", node.name}});
-        content.int32(nextId_);  // the child is written next
-        content.int32(-1);
-        content.int32(isRoot ? -1 : node.layer);
-        content.int32(1);
-        content.dict(isRoot ? Attributes{} : placement(node));
-        out_.chunk("nTRN", content);
+        out_.transform({.id = id,
+                        .child = nextId_,  // it is written next
+                        .frames = {isRoot ? VoxDict{} : placement(node)},
+                        .attributes = node.name.empty() ? VoxDict{} : VoxDict{{"_name", node.name}},
+                        .layer = isRoot ? -1 : node.layer});
         if (node.model >= 0) {
-            shape(node.model);
+            out_.shape({.id = nextId_++, .models = {{node.model, {}}}});
         } else {
             group(node.children);
         }
     }
 
-    void group(const std::vector<Node>& children) {
+    void group(const std::vector<Node>& nodes) {
         // Ids of the children depend on the size of the subtrees before them, so these are written aside
         // first.
         const int id = nextId_++;
-        Bytes subtrees;
+        VoxWriter subtrees;
         GraphWriter writer(subtrees);
         writer.nextId_ = nextId_;
-        Bytes content;
-        content.int32(id);
-        content.dict({});
-        content.int32(static_cast<std::int32_t>(children.size()));
-        for (const Node& child : children) {
-            content.int32(writer.nextId_);
-            writer.transform(child, false);
+        std::vector<std::int32_t> children;
+        for (const Node& node : nodes) {
+            children.push_back(writer.nextId_);
+            writer.transform(node, false);
         }
         nextId_ = writer.nextId_;
-        out_.chunk("nGRP", content);
-        out_.data.insert(out_.data.end(), subtrees.data.begin(), subtrees.data.end());
+        out_.group(id, children).append(subtrees);
     }
 
-    void shape(int model) {
-        Bytes content;
-        content.int32(nextId_++);
-        content.dict({});
-        content.int32(1);
-        content.int32(model);
-        content.dict({});
-        out_.chunk("nSHP", content);
-    }
-
-    using Attributes = std::vector<std::pair<std::string, std::string>>;
-
-    static Attributes placement(const Node& node) {
-        Attributes attributes;
+    static VoxDict placement(const Node& node) {
+        VoxDict attributes;
         constexpr int kIdentity = 4;
         if (const int code = node.rotation.code(); code != kIdentity) {
             attributes.emplace_back("_r", std::to_string(code));
@@ -167,56 +113,33 @@ class GraphWriter {
         return attributes;
     }
 
-    Bytes& out_;
+    VoxWriter& out_;
     int nextId_ = 0;
 };
 
-void writeLayers(Bytes& out, const std::vector<LayerText>& layers) {
-    for (std::size_t i = 0; i < layers.size(); ++i) {
-        Bytes content;
-        content.int32(static_cast<std::int32_t>(i));
-        if (layers[i].hidden) {
-            content.dict({{"_name", layers[i].name}, {"_hidden", "1"}});
-        } else {
-            content.dict({{"_name", layers[i].name}});
-        }
-        content.int32(-1);
-        out.chunk("LAYR", content);
-    }
-}
-
-void writePalette(Bytes& out, const Palette& palette) {
-    Bytes colors;
+void writePalette(VoxWriter& out, const Palette& palette) {
+    std::array<std::array<std::uint8_t, 4>, 256> colors;
     for (int index = 1; index <= 256; ++index) {
         const Color color = palette.color(index);
-        for (const std::uint8_t v : {color.r, color.g, color.b, std::uint8_t{255}}) colors.data.push_back(v);
+        colors[static_cast<std::size_t>(index - 1)] = {color.r, color.g, color.b, 255};
     }
-    out.chunk("RGBA", colors);
-    for (const auto& [index, attributes] : palette.materials()) {
-        Bytes content;
-        content.int32(index);
-        content.dict(attributes);
-        out.chunk("MATL", content);
-    }
+    out.palette(colors);
+    for (const auto& [index, attributes] : palette.materials()) out.material(index, attributes);
 }
 
 }  // namespace
 
-std::vector<std::uint8_t> writeVox(const VoxScene& scene, const Palette& palette) {
-    Bytes children;
-    for (const Canvas& model : scene.models) writeModel(children, model);
-    if (!scene.nodes.empty()) GraphWriter(children).write(scene.nodes);
-    writeLayers(children, scene.layers);
-    writePalette(children, palette);
-
-    Bytes file;
-    file.text("VOX ");
-    file.int32(kVersion);
-    file.text("MAIN");
-    file.int32(0);
-    file.int32(static_cast<std::int32_t>(children.data.size()));
-    file.data.insert(file.data.end(), children.data.begin(), children.data.end());
-    return std::move(file.data);
+std::string writeVox(const VoxScene& scene, const Palette& palette) {
+    VoxWriter file;
+    for (const Canvas& model : scene.models) writeModel(file, model);
+    if (!scene.nodes.empty()) GraphWriter(file).write(scene.nodes);
+    for (std::size_t i = 0; i < scene.layers.size(); ++i) {
+        VoxDict attributes{{"_name", scene.layers[i].name}};
+        if (scene.layers[i].hidden) attributes.emplace_back("_hidden", "1");
+        file.layer(static_cast<int>(i), attributes);
+    }
+    writePalette(file, palette);
+    return file.finish();
 }
 
 }  // namespace pfvox::demo

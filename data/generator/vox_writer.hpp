@@ -1,7 +1,7 @@
-// VoxWriter: writes MagicaVoxel files with models, materials, layers and a scene graph.
+// Writes MagicaVoxel files with models, materials, layers and a scene graph.
 //
-// The demo sources are made by a writer of their own rather than by the library's code, so that an error of
-// the importer cannot hide behind the same error in an exporter. z is up, as in MagicaVoxel.
+// Only the bytes of chunks are the library's: placement and numbering are of their own, so that an error of
+// the importer cannot hide behind the same error in the exporter. z is up, as in MagicaVoxel.
 #pragma once
 
 #include <cstddef>
@@ -60,6 +60,6 @@ struct VoxScene {
 };
 
 /// The bytes of a .vox file. Equal scenes give equal bytes.
-std::vector<std::uint8_t> writeVox(const VoxScene& scene, const Palette& palette);
+std::string writeVox(const VoxScene& scene, const Palette& palette);
 
 }  // namespace pfvox::demo

@@ -7,16 +7,16 @@
 #include <cmath>
 #include <pfvox/export.hpp>
 
-#include "export/vox_chunk_writer.hpp"
 #include "export/vox_materials.hpp"
+#include "export/vox_writer.hpp"
 
 namespace pfvox {
 
 namespace {
 
-using vox_export::ChunkWriter;
-using vox_export::Content;
-using vox_export::Dict;
+using vox_file::VoxDict;
+using vox_file::VoxVoxel;
+using vox_file::VoxWriter;
 
 constexpr std::size_t kMaxMaterials = 255;
 
@@ -105,12 +105,11 @@ glm::i64vec3 voxTranslation(const GridPlacement& placement, const Part& part) {
 
 /// SIZE and XYZI of one region.
 Part writePart(const OctreeModel& model, const OctreeRegion& region, std::uint32_t voxModel,
-               ChunkWriter& chunks) {
+               VoxWriter& file) {
     const Part part{
         .corner = glm::i64vec3{region.bounds.min}, .size = region.bounds.size(), .voxModel = voxModel};
-    chunks.add("SIZE", Content().i32(part.size.x).i32(part.size.z).i32(part.size.y));
-    Content voxels;
-    voxels.i32(static_cast<std::int64_t>(region.voxelCount));
+    std::vector<VoxVoxel> voxels;
+    voxels.reserve(region.voxelCount);
     // Top-down in the order of MagicaVoxel's own files: z slowest, then y, then x.
     for (std::int64_t up = 0; up < part.size.y; ++up) {
         for (std::int64_t back = 0; back < part.size.z; ++back) {
@@ -118,71 +117,70 @@ Part writePart(const OctreeModel& model, const OctreeRegion& region, std::uint32
                 const glm::i64vec3 ours = part.corner + glm::i64vec3{x, up, part.size.z - 1 - back};
                 const auto material = model.at(glm::ivec3{ours});
                 if (!material) continue;
-                voxels.byte(static_cast<std::uint8_t>(x)).byte(static_cast<std::uint8_t>(back));
-                voxels.byte(static_cast<std::uint8_t>(up)).byte(static_cast<std::uint8_t>(*material + 1));
+                voxels.push_back({static_cast<std::uint8_t>(x), static_cast<std::uint8_t>(back),
+                                  static_cast<std::uint8_t>(up), static_cast<std::uint8_t>(*material + 1)});
             }
         }
     }
-    chunks.add("XYZI", voxels);
+    const glm::ivec3 size(part.size);
+    file.model({size.x, size.z, size.y}, voxels);
     return part;
 }
 
 void writeNode(const Instance& instance, const GridPlacement& placement, const Part& part, int id,
-               ChunkWriter& chunks) {
-    Dict attributes;
+               VoxWriter& file) {
+    VoxDict attributes;
     if (!instance.name.empty()) attributes.emplace_back("_name", instance.name);
     if (instance.hidden) attributes.emplace_back("_hidden", "1");
     const glm::i64vec3 t = voxTranslation(placement, part);
-    const Dict frame{{"_r", fmt::format("{}", rotationByte(placement))},
-                     {"_t", fmt::format("{} {} {}", t.x, t.y, t.z)}};
-    chunks.add("nTRN",
-               Content().i32(id).dict(attributes).i32(id + 1).i32(-1).i32(instance.layer).i32(1).dict(frame));
-    chunks.add("nSHP", Content().i32(id + 1).dict({}).i32(1).i32(part.voxModel).dict({}));
+    const VoxDict frame{{"_r", fmt::format("{}", rotationByte(placement))},
+                        {"_t", fmt::format("{} {} {}", t.x, t.y, t.z)}};
+    file.transform({.id = id,
+                    .child = id + 1,
+                    .frames = {frame},
+                    .attributes = std::move(attributes),
+                    .layer = instance.layer});
+    file.shape({.id = id + 1, .models = {{static_cast<int>(part.voxModel), {}}}});
 }
 
 Result<void> writeGraph(const OctreeAsset& asset, const std::vector<std::vector<Part>>& parts,
-                        ChunkWriter& chunks) {
+                        VoxWriter& file) {
     constexpr int kFirstInstanceNode = 2;
-    Content group;
-    std::int64_t count = 0;
+    std::vector<std::int32_t> children;
     for (const Instance& instance : asset.instances)
-        count += static_cast<std::int64_t>(parts[instance.model].size());
-    group.i32(1).dict({}).i32(count);
-    for (std::int64_t i = 0; i < count; ++i) group.i32(kFirstInstanceNode + 2 * i);
-    chunks.add("nTRN", Content().i32(0).dict({}).i32(1).i32(-1).i32(-1).i32(1).dict({}));
-    chunks.add("nGRP", group);
+        for (std::size_t i = 0; i < parts[instance.model].size(); ++i)
+            children.push_back(kFirstInstanceNode + 2 * static_cast<std::int32_t>(children.size()));
+    file.transform({.id = 0, .child = 1});
+    file.group(1, children);
 
     int id = kFirstInstanceNode;
     for (std::size_t i = 0; i < asset.instances.size(); ++i) {
         PFVOX_TRY(const GridPlacement, placement,
                   gridPlacement(asset.instances[i], i, asset.source.voxelSizeMetres));
         for (const Part& part : parts[asset.instances[i].model]) {
-            writeNode(asset.instances[i], placement, part, id, chunks);
+            writeNode(asset.instances[i], placement, part, id, file);
             id += 2;
         }
     }
     return {};
 }
 
-void writeMaterials(const OctreeAsset& asset, ChunkWriter& chunks) {
+void writeMaterials(const OctreeAsset& asset, VoxWriter& file) {
     for (std::size_t i = 0; i < asset.layers.size(); ++i) {
         const Layer& layer = asset.layers[i];
-        Dict attributes{{"_name", layer.name}};
+        VoxDict attributes{{"_name", layer.name}};
         if (layer.hidden) attributes.emplace_back("_hidden", "1");
-        chunks.add("LAYR", Content().i32(static_cast<std::int64_t>(i)).dict(attributes).i32(-1));
+        file.layer(static_cast<int>(i), attributes);
     }
-    Content palette;
-    for (std::size_t i = 0; i < kMaxMaterials + 1; ++i) {
-        const glm::u8vec4 c =
-            i < asset.materials.size() ? asset.materials[i].baseColor : glm::u8vec4{0, 0, 0, 255};
-        palette.byte(c.x).byte(c.y).byte(c.z).byte(c.w);
-    }
-    chunks.add("RGBA", palette);
+    std::array<std::array<std::uint8_t, 4>, kMaxMaterials + 1> palette;
+    palette.fill({0, 0, 0, 255});
     for (std::size_t i = 0; i < asset.materials.size(); ++i) {
-        chunks.add(
-            "MATL",
-            Content().i32(static_cast<std::int64_t>(i) + 1).dict(vox_export::matlOf(asset.materials[i])));
+        const glm::u8vec4 c = asset.materials[i].baseColor;
+        palette[i] = {c.x, c.y, c.z, c.w};
     }
+    file.palette(palette);
+    for (std::size_t i = 0; i < asset.materials.size(); ++i)
+        file.material(static_cast<int>(i) + 1, vox_export::matlOf(asset.materials[i]));
 }
 
 }  // namespace
@@ -192,21 +190,23 @@ Result<std::vector<std::byte>> exportVox(const OctreeAsset& asset, Diagnostics& 
         return fail(ErrorCode::LimitExceeded, fmt::format("{} materials; a .vox file has room for {}",
                                                           asset.materials.size(), kMaxMaterials));
     }
-    ChunkWriter chunks;
+    VoxWriter file;
     std::vector<std::vector<Part>> parts(asset.models.size());
     std::uint32_t voxModel = 0;
     bool named = false;
     for (std::size_t m = 0; m < asset.models.size(); ++m) {
         for (const OctreeRegion& region : asset.models[m].regions) {
-            parts[m].push_back(writePart(asset.models[m], region, voxModel++, chunks));
+            parts[m].push_back(writePart(asset.models[m], region, voxModel++, file));
         }
     }
     if (voxModel == 0) return fail(ErrorCode::NothingToConvert, "the asset holds no voxel");
-    PFVOX_CHECK(writeGraph(asset, parts, chunks));
-    writeMaterials(asset, chunks);
+    PFVOX_CHECK(writeGraph(asset, parts, file));
+    writeMaterials(asset, file);
     for (const Material& material : asset.materials) named = named || !material.name.empty();
     if (named) diagnostics.note("export-vox-precision", "names of materials have no place in a .vox file");
-    return chunks.finish();
+    const std::string bytes = file.finish();
+    const auto all = std::as_bytes(std::span(bytes));
+    return std::vector<std::byte>(all.begin(), all.end());
 }
 
 }  // namespace pfvox

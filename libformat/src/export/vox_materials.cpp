@@ -30,7 +30,7 @@ const char* typeName(MaterialType type) {
 }
 
 /// Strength = _emit x 10^_flux with _emit at most 1.
-void addEmission(float strength, Dict& dict) {
+void addEmission(float strength, vox_file::VoxDict& dict) {
     const int flux = strength > 1.0f ? static_cast<int>(std::ceil(std::log10(strength))) : 0;
     dict.emplace_back("_emit", fmt::format("{}", strength / std::pow(10.0f, static_cast<float>(flux))));
     dict.emplace_back("_flux", fmt::format("{}", flux));
@@ -38,8 +38,8 @@ void addEmission(float strength, Dict& dict) {
 
 }  // namespace
 
-Dict matlOf(const Material& material) {
-    Dict dict{{"_type", typeName(material.type)}};
+vox_file::VoxDict matlOf(const Material& material) {
+    vox_file::VoxDict dict{{"_type", typeName(material.type)}};
     const auto add = [&](const char* key, float value) { dict.emplace_back(key, fmt::format("{}", value)); };
     add("_rough", material.roughness);
     add("_spec", material.specular);

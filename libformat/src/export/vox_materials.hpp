@@ -3,10 +3,10 @@
 
 #include <pfvox/asset.hpp>
 
-#include "export/vox_chunk_writer.hpp"
+#include "export/vox_writer.hpp"
 
 namespace pfvox::vox_export {
 
-Dict matlOf(const Material& material);
+vox_file::VoxDict matlOf(const Material& material);
 
 }  // namespace pfvox::vox_export
