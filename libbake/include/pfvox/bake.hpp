@@ -29,9 +29,9 @@ enum class LightSampling : std::uint8_t {
 /// How a bake is done.
 struct BakeSettings {
     ProbeResolution resolution = resolutionOf(ProbeProfile::Default);  ///< of the maps
-    std::uint64_t seed = 0;                                            ///< of the random numbers
-    std::uint32_t minSamples = 32;                                     ///< paths a texel; a multiple of 16
-    std::uint32_t maxSamples = 4096;                                   ///< a multiple of 16, >= minSamples
+    std::uint64_t seed = 0;
+    std::uint32_t minSamples = 32;    ///< paths a texel; a multiple of 16
+    std::uint32_t maxSamples = 4096;  ///< a multiple of 16, >= minSamples
     /// A tile of 8 x 8 texels stops when the standard error of its mean is under noiseTarget x max(mean,
     /// noiseFloor); 0 = every texel gets minSamples.
     float noiseTarget = 0.02f;
@@ -41,7 +41,7 @@ struct BakeSettings {
     std::optional<std::uint32_t> maxBounces;
     /// The probes to bake; the file is then a shard. Nothing = all.
     std::optional<ProbeRange> range;
-    LightSampling sampling = LightSampling::Combined;  ///< how paths find light
+    LightSampling sampling = LightSampling::Combined;
     bool stratified = true;  ///< Sobol points for the first two vertices; false, for tests: hashes for all
     bool relocate = true;    ///< move probes out of solids; false: those that touch one are inactive
     bool filter = true;  ///< take noise out of the light maps (docs/baking.md); false: each texel has its own
@@ -51,7 +51,7 @@ struct BakeSettings {
     bool resume = false;            ///< take finished probes from the journal beside the output
     bool force = false;             ///< bake even if the output is there and says it has this content already
     double dispatchSeconds = 0.25;  ///< device work is cut into pieces of about this length
-    std::string toolName = "pfvox";  ///< kept in the file
+    std::string toolName = "pfvox";
 };
 
 /// Where a bake stands.
@@ -59,9 +59,9 @@ struct BakeProgress {
     std::uint64_t probes = 0;        ///< to be baked in all
     std::uint64_t probesDone = 0;    ///< those that the journal had counted
     std::uint64_t probesReused = 0;  ///< of these, taken from the journal
-    std::uint64_t rays = 0;          ///< cast so far
-    double elapsedSeconds = 0.0;     ///< since the bake began
-    double gpuMs = 0.0;              ///< device time so far
+    std::uint64_t rays = 0;
+    double elapsedSeconds = 0.0;
+    double gpuMs = 0.0;
     /// From the time of the probes baked so far; nothing before the first.
     std::optional<double> secondsLeft;
 };
@@ -82,21 +82,21 @@ class BakeObserver {
 
 /// Rays and device time of one pass.
 struct BakePass {
-    std::uint64_t rays = 0;  ///< cast by the pass
-    double gpuMs = 0.0;      ///< time of the pass on the device
+    std::uint64_t rays = 0;
+    double gpuMs = 0.0;
 };
 /// What a bake did and what came of it.
 struct BakeReport {
-    bool upToDate = false;       ///< the output had this content already: nothing was done, the rest is empty
-    BakePass geometry;           ///< what the probes see
+    bool upToDate = false;  ///< the output had this content already: nothing was done, the rest is empty
+    BakePass geometry;
     BakePass light;              ///< paths, shadow rays counted
     double smallLayersMs = 0.0;  ///< CPU: irradiance, moments, min maps, summed over threads
     double proximityMs = 0.0;    ///< CPU, wall clock: the proximity grid
     double writeMs = 0.0;        ///< compression and journal, summed over threads; then copying into the file
-    double totalMs = 0.0;        ///< wall clock
-    std::uint64_t probes = 0;    ///< in the range of this bake
-    std::uint64_t reused = 0;    ///< taken from the journal
-    ProbeCounts counts;          ///< of these probes
+    double totalMs = 0.0;
+    std::uint64_t probes = 0;
+    std::uint64_t reused = 0;  ///< taken from the journal
+    ProbeCounts counts;
     std::uint64_t emitterFaces = 0;   ///< exposed faces of emissive voxels
     std::uint64_t stepLimitRays = 0;  ///< given up by the traversal; 0 in valid data
     /// Relative standard error of I, mean over the probes of which it is known; nothing = of none
@@ -107,8 +107,8 @@ struct BakeReport {
                                               ///< nothing = not adaptive
     std::optional<double>
         meanSamples;  ///< paths a texel that sees a surface, of probes baked in this run; nothing = none was
-    ProximityReport proximity;    ///< uncoveredCells among it
-    std::uint64_t fileBytes = 0;  ///< of the output
+    ProximityReport proximity;  ///< uncoveredCells among it
+    std::uint64_t fileBytes = 0;
 };
 
 /// Of everything in a scene that decides the light: models, transforms, materials, sun and sky. Cameras,

@@ -12,10 +12,10 @@
 namespace pfvox {
 /// Two pictures to compare, row by row.
 struct FlipInput {
-    std::uint32_t width = 0;               ///< pixels
-    std::uint32_t height = 0;              ///< pixels
-    std::span<const glm::vec3> reference;  ///< width * height
-    std::span<const glm::vec3> test;       ///< width * height, as `reference`
+    std::uint32_t width = 0;   ///< pixels
+    std::uint32_t height = 0;  ///< pixels
+    std::span<const glm::vec3> reference;
+    std::span<const glm::vec3> test;  ///< width * height, as `reference`
     /// Pixels a degree of the eye's view: 67 for a screen of 3840 pixels on 0.7 m, seen from 0.7 m.
     double pixelsPerDegree = 67.0206;
 };

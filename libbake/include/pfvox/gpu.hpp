@@ -42,16 +42,16 @@ enum class DeviceKind : std::uint8_t { Discrete, Integrated, Virtual, Other, Sof
 const char* toString(DeviceKind kind);
 /// A Vulkan device, whether we can use it or not.
 struct DeviceInfo {
-    std::uint32_t index = 0;              ///< position in listDevices(); selects the device
-    std::string name;                     ///< as its driver gives it
-    DeviceKind kind = DeviceKind::Other;  ///< discrete, integrated, software
-    std::string driver;                   ///< driver name and version, as the driver spells them
-    std::uint32_t apiVersionMajor = 0;    ///< of the device, not of the loader
-    std::uint32_t apiVersionMinor = 0;    ///< of the device, not of the loader
+    std::uint32_t index = 0;  ///< position in listDevices(); selects the device
+    std::string name;
+    DeviceKind kind = DeviceKind::Other;
+    std::string driver;                 ///< driver name and version, as the driver spells them
+    std::uint32_t apiVersionMajor = 0;  ///< of the device, not of the loader
+    std::uint32_t apiVersionMinor = 0;  ///< of the device, not of the loader
     std::uint64_t localMemoryBytes =
         0;                ///< largest device-local heap, or DeviceOptions::memoryBytes if that is less
     std::string missing;  ///< what pfvox needs and the device lacks; empty = usable
-    bool usable() const { return missing.empty(); }  ///< whether it has all that is needed
+    bool usable() const { return missing.empty(); }
 };
 
 /// Every Vulkan device of the machine, usable or not. Errors: GpuUnavailable when there is no Vulkan loader
@@ -69,7 +69,7 @@ struct DeviceOptions {
     /// Further extensions for whoever shares the device (pfvox/gpu_native.hpp). A device without them is not
     /// usable.
     std::vector<std::string> instanceExtensions = {};
-    std::vector<std::string> deviceExtensions = {};  ///< further ones, by name
+    std::vector<std::string> deviceExtensions = {};
     /// When set, the queue draws as well as computes and is one for which this is true.
     std::function<bool(const NativeQueueFamily&)> queueFits = {};
 };
@@ -81,7 +81,7 @@ class Buffer {
     Buffer& operator=(Buffer&&) noexcept;
     ~Buffer();
 
-    std::uint64_t sizeBytes() const;  ///< as it was made
+    std::uint64_t sizeBytes() const;
     /// What shaders see, low word first. A multiple of 256.
     std::uint64_t address() const;
     glm::uvec2 addressWords(std::uint64_t offsetBytes = 0) const {
@@ -128,7 +128,7 @@ std::span<const std::byte> bytesOf(const T& block) {
 /// Memory of the device that this process has taken through it.
 struct MemoryUse {
     std::uint64_t currentBytes = 0;  ///< buffers and staging that exist now
-    std::uint64_t peakBytes = 0;     ///< the most at one time
+    std::uint64_t peakBytes = 0;
 };
 
 /// One opened GPU (or llvmpipe, which computes the same on the CPU).
@@ -141,8 +141,8 @@ class Device {
     Device& operator=(Device&&) noexcept;
     ~Device();
 
-    const DeviceInfo& info() const;  ///< what was opened
-    MemoryUse memory() const;        ///< buffers of this device, now and at most
+    const DeviceInfo& info() const;
+    MemoryUse memory() const;  ///< buffers of this device, now and at most
     /// The largest buffer that createBuffer can make.
     std::uint64_t maxBufferBytes() const;
 

@@ -19,8 +19,8 @@ class GpuEmitters {
 
     /// Of the shared::EmitterFace array; 0 where there are none.
     glm::uvec2 address() const { return faces_ ? faces_->addressWords() : glm::uvec2(0); }
-    std::uint32_t count() const { return count_; }  ///< faces
-    float power() const { return power_; }          ///< sum of area (square meters) x mean radiance
+    std::uint32_t count() const { return count_; }
+    float power() const { return power_; }  ///< sum of area (square meters) x mean radiance
 
   private:
     std::optional<gpu::Buffer> faces_;

@@ -28,11 +28,11 @@ struct GpuProbeSettings {
 };
 /// What the probes take there.
 struct GpuProbeStatistics {
-    std::uint32_t probes = 0;                                           ///< in the file
-    std::uint32_t active = 0;                                           ///< of them, with maps
-    std::uint64_t mapBytes = 0;                                         ///< of maps
-    std::uint64_t tableBytes = 0;                                       ///< entries and proximity grid
-    std::uint64_t totalBytes() const { return mapBytes + tableBytes; }  ///< all together
+    std::uint32_t probes = 0;
+    std::uint32_t active = 0;  ///< of them, with maps
+    std::uint64_t mapBytes = 0;
+    std::uint64_t tableBytes = 0;  ///< entries and proximity grid
+    std::uint64_t totalBytes() const { return mapBytes + tableBytes; }
 };
 
 /// Immutable once made. Keeps its device alive; does not keep the reader.
@@ -48,7 +48,7 @@ class GpuProbes {
 
     /// Device address of the shared::ProbeFieldRecord.
     glm::uvec2 address() const { return table_.addressWords(); }
-    const GpuProbeStatistics& statistics() const { return statistics_; }  ///< fixed after load()
+    const GpuProbeStatistics& statistics() const { return statistics_; }
 
   private:
     GpuProbes(Buffer table, std::vector<Buffer> blocks)

@@ -29,30 +29,30 @@ std::vector<ScenePart> partsOf(const LoadedScene& scene);
 
 /// A box in the world, in metres. Empty when min > max.
 struct WorldBox {
-    glm::dvec3 min{std::numeric_limits<double>::infinity()};                        ///< metres
-    glm::dvec3 max{-std::numeric_limits<double>::infinity()};                       ///< metres
-    bool empty() const { return min.x > max.x || min.y > max.y || min.z > max.z; }  ///< nothing included
+    glm::dvec3 min{std::numeric_limits<double>::infinity()};   ///< metres
+    glm::dvec3 max{-std::numeric_limits<double>::infinity()};  ///< metres
+    bool empty() const { return min.x > max.x || min.y > max.y || min.z > max.z; }
 };
 
 /// What the scene consists of and where its bytes are.
 struct SceneStatistics {
-    std::uint32_t models = 0;         ///< that a visible instance uses
-    std::uint32_t instances = 0;      ///< visible
-    std::uint32_t regions = 0;        ///< of all models, each once
-    std::uint32_t materials = 0;      ///< of all assets
-    std::uint32_t bvhNodes = 0;       ///< of the BVH over regions
-    std::uint64_t voxels = 0;         ///< of the models, each counted once
-    std::uint64_t nodeBytes = 0;      ///< wide nodes
-    std::uint64_t lodBytes = 0;       ///< levels of detail
-    std::uint64_t valueBytes = 0;     ///< materials of single voxels
-    std::uint64_t paletteBytes = 0;   ///< regions' palettes
-    std::uint64_t instanceBytes = 0;  ///< instances, models, materials, BVH
-    bool hasGlass = false;            ///< materials that let light through
-    bool hasMirrors = false;          ///< materials that mirror: metal and plastic
-    double buildMs = 0.0;             ///< CPU time of layout, BVH and upload
+    std::uint32_t models = 0;  ///< that a visible instance uses
+    std::uint32_t instances = 0;
+    std::uint32_t regions = 0;    ///< of all models, each once
+    std::uint32_t materials = 0;  ///< of all assets
+    std::uint32_t bvhNodes = 0;   ///< of the BVH over regions
+    std::uint64_t voxels = 0;     ///< of the models, each counted once
+    std::uint64_t nodeBytes = 0;
+    std::uint64_t lodBytes = 0;
+    std::uint64_t valueBytes = 0;
+    std::uint64_t paletteBytes = 0;
+    std::uint64_t instanceBytes = 0;
+    bool hasGlass = false;    ///< materials that let light through
+    bool hasMirrors = false;  ///< materials that mirror: metal and plastic
+    double buildMs = 0.0;     ///< CPU time of layout, BVH and upload
     std::uint64_t totalBytes() const {
         return nodeBytes + lodBytes + valueBytes + paletteBytes + instanceBytes;
-    }  ///< on the device
+    }
 };
 
 /// Immutable once built. Keeps its device alive; does not keep the assets.
@@ -78,7 +78,7 @@ class Scene {
     const glm::dvec3& origin() const { return origin_; }  ///< of the device's frame, in the world
     /// As the device counts.
     glm::vec3 onDevice(const glm::dvec3& world) const { return glm::vec3(world - origin_); }
-    const SceneStatistics& statistics() const { return statistics_; }  ///< fixed after build()
+    const SceneStatistics& statistics() const { return statistics_; }
 
   private:
     struct PlacedModel;

@@ -77,7 +77,7 @@ inline constexpr std::size_t kMaterialTypeCount = 7;
 
 /// How far the probes are from the reference, over the pixels with surface.
 struct VerifyScore {
-    std::uint64_t surfacePixels = 0;                           ///< pixels that the rest is about
+    std::uint64_t surfacePixels = 0;
     std::uint64_t withoutValue = 0;                            ///< of these: no tier, or not finite
     std::array<double, gpu::kProbeTierCount> tierFractions{};  ///< of surface pixels, by tier
     VerifyPart all;                                            ///< every pixel with surface
@@ -95,10 +95,10 @@ struct VerifyScore {
 
 /// What is looked at; all of it outlives the call.
 struct VerifyInput {
-    const LoadedScene& loaded;     ///< sun and sky
-    const gpu::Scene& scene;       ///< what is seen
+    const LoadedScene& loaded;  ///< sun and sky
+    const gpu::Scene& scene;
     const gpu::GpuProbes& probes;  ///< baked from it
-    const Camera& camera;          ///< from where
+    const Camera& camera;
 };
 
 /// Renders pictures both ways and compares them. Not thread-safe.

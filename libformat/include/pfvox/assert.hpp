@@ -3,7 +3,7 @@
 #pragma once
 
 namespace pfvox::detail {
-[[noreturn]] void assertionFailed(const char* condition, const char* file, int line);  ///< For PFVOX_ASSERT.
+[[noreturn]] void assertionFailed(const char* condition, const char* file, int line);
 }
 
 #ifdef PFVOX_ENABLE_ASSERTIONS

@@ -85,14 +85,14 @@ struct NodeLod {
     /// visible.
     std::vector<std::uint16_t> materials;
 
-    bool empty() const { return colors.empty(); }  ///< Whether the asset has no levels of detail.
+    bool empty() const { return colors.empty(); }
     bool operator==(const NodeLod&) const = default;
 };
 
 /// At most 256^3 voxels of a model: its own tree, values and palette.
 struct OctreeRegion {
-    glm::ivec3 originVoxels{0};          ///< lower corner in model voxels
-    NodeTree tree;                       ///< shape
+    glm::ivec3 originVoxels{0};  ///< lower corner in model voxels
+    NodeTree tree;
     PooledVector<std::uint32_t> lookup;  ///< one word for each node
     PooledVector<std::uint8_t> values;   ///< palette indices of valueBytes() each, little endian
     std::vector<MaterialIndex> palette;  ///< palette index -> material of the asset, ascending
@@ -103,13 +103,13 @@ struct OctreeRegion {
     /// Has the arrays take their memory from a pool. Precondition: they are empty.
     void usePool(const std::shared_ptr<MemoryPool>& pool);
 
-    std::size_t valueBytes() const { return palette.size() <= 256 ? 1 : 2; }  ///< Size of a value: 1 or 2.
-    std::size_t valueCount() const { return values.size() / valueBytes(); }   ///< Number of values.
+    std::size_t valueBytes() const { return palette.size() <= 256 ? 1 : 2; }
+    std::size_t valueCount() const { return values.size() / valueBytes(); }
     std::uint32_t value(std::size_t index) const {
         return valueBytes() == 1
                    ? values[index]
                    : static_cast<std::uint32_t>(values[2 * index] | (values[2 * index + 1] << 8));
-    }  ///< Palette index at `index`.
+    }
 };
 
 /// One model: a top tree whose leaves are regions, in node order then slot order. A model of at most 256^3
@@ -152,7 +152,7 @@ Result<OctreeAsset> buildOctrees(const VoxelAsset& asset, const Limits& limits,
 struct VoxelList {
     std::span<const PackedVoxel> voxels;  ///< in any order; of several in one place the last one wins
     glm::ivec3 origin{0};                 ///< the model voxel that (0, 0, 0) of the list is
-    std::string name = {};                ///< of the model
+    std::string name = {};
 };
 
 /// Builds one octree straight from a list. The result is that of VoxelModel::insert() and buildOctrees(), but
@@ -173,6 +173,6 @@ struct OctreeStatistics {
         0;  ///< nodes + lookup + far table (4 B each) + values (1 B, 2 B past 256 palette entries)
     std::vector<std::uint64_t> voxelsOfMaterial;  ///< by material index of the asset
 };
-OctreeStatistics statistics(const OctreeModel& model, std::size_t materialCount);  ///< Counts of one model.
+OctreeStatistics statistics(const OctreeModel& model, std::size_t materialCount);
 
 }  // namespace pfvox

@@ -188,9 +188,7 @@ struct ProximityGrid {
     glm::uvec3 counts{0u};              ///< cells along x, y, z
     std::vector<std::uint32_t> probes;  ///< kProbesPerCell a cell; kNoProbe at the end of a shorter list
 
-    std::uint64_t cellCount() const {
-        return std::uint64_t{counts.x} * counts.y * counts.z;
-    }  ///< of the grid
+    std::uint64_t cellCount() const { return std::uint64_t{counts.x} * counts.y * counts.z; }
     bool operator==(const ProximityGrid&) const = default;
 };
 

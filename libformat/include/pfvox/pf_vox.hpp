@@ -65,10 +65,10 @@ inline constexpr std::uint32_t kWholeFile = 0xffffffffu;  ///< a section that be
 
 /// One entry of the section table, for reports.
 struct PfVoxSection {
-    std::string fourcc;             ///< four characters: "NODE"
-    std::uint32_t regionId = 0;     ///< kWholeFile when the section belongs to the whole file
-    std::string codec;              ///< "raw" or "zstd"
-    std::uint64_t offsetBytes = 0;  ///< in the file
+    std::string fourcc;          ///< four characters: "NODE"
+    std::uint32_t regionId = 0;  ///< kWholeFile when the section belongs to the whole file
+    std::string codec;           ///< "raw" or "zstd"
+    std::uint64_t offsetBytes = 0;
     std::uint64_t storedBytes = 0;  ///< as it lies there
     std::uint64_t rawBytes = 0;     ///< after decompression
 };

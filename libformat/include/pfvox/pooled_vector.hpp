@@ -56,7 +56,7 @@ class PoolAllocator {
     static_assert(std::is_trivially_copyable_v<T> && alignof(T) <= MemoryPool::kAlignment);
 
   public:
-    using value_type = T;                                           ///< for std::allocator_traits
+    using value_type = T;
     using propagate_on_container_move_assignment = std::true_type;  ///< the pool goes with the memory
     using propagate_on_container_swap = std::true_type;             ///< the pool goes with the memory
     using is_always_equal = std::false_type;                        ///< pools differ

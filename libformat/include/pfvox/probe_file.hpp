@@ -19,7 +19,7 @@ namespace pfvox {
 
 /// Where a layer lies in its file.
 struct ProbeFrame {
-    std::uint64_t offsetBytes = 0;  ///< in the file
+    std::uint64_t offsetBytes = 0;
     std::uint32_t storedBytes = 0;  ///< after compression
     std::string_view codec;         ///< "raw" or "predicted"
     std::uint64_t rawHash = 0;      ///< xxh3-64 of the words

@@ -17,15 +17,11 @@ struct ProbeGrid {
     glm::vec3 step{1.0f};    ///< distance of neighbors along each axis, metres, > 0
     glm::uvec3 counts{1u};   ///< each at least 1, the product below 2^32
 
-    std::uint64_t probeCount() const {
-        return std::uint64_t{counts.x} * counts.y * counts.z;
-    }  ///< of the grid
-    std::uint32_t indexOf(glm::uvec3 at) const {
-        return at.x + counts.x * (at.y + counts.y * at.z);
-    }  ///< x runs first
+    std::uint64_t probeCount() const { return std::uint64_t{counts.x} * counts.y * counts.z; }
+    std::uint32_t indexOf(glm::uvec3 at) const { return at.x + counts.x * (at.y + counts.y * at.z); }
     glm::uvec3 placeOf(std::uint32_t index) const {
         return {index % counts.x, index / counts.x % counts.y, index / counts.x / counts.y};
-    }  ///< The inverse of indexOf().
+    }
     /// The grid point of a probe; the probe itself stands at this plus ProbeRecord::offset.
     glm::vec3 pointOf(std::uint32_t index) const { return start + step * glm::vec3{placeOf(index)}; }
     /// In the world, of what lies there in the field.

@@ -16,7 +16,7 @@ inline constexpr std::uint32_t kUnlimitedBounces =
 
 /// Optional ones are unknown where there is nothing: files of PF_PROBE 1.0 do not keep them.
 struct ProbeBakeSettings {
-    std::uint64_t seed = 0;              ///< of the random numbers
+    std::uint64_t seed = 0;
     std::uint32_t tracedResolution = 0;  ///< of the maps that were traced, before any reduction
     std::uint32_t minSamples = 0;        ///< paths a texel
     std::uint32_t maxSamples = 0;        ///< equal to minSamples when not adaptive
@@ -30,7 +30,7 @@ struct ProbeBakeSettings {
     std::optional<std::uint32_t> filter;    ///< revision of the filter that light maps went through; 0 = none
     bool operator==(const ProbeBakeSettings&) const = default;
 
-    bool isAdaptive() const { return noiseTarget > 0.0f; }  ///< Whether tiles stopped by their noise.
+    bool isAdaptive() const { return noiseTarget > 0.0f; }
 };
 
 /// What a setting is called.
@@ -61,8 +61,8 @@ void forEachProbeSetting(const Visit& visit, Settings&... of) {
 /// A setting of two fields that is not the same, in words: "--bounces 2" and "--bounces 4", or "--bounces
 /// unknown".
 struct ProbeSettingDifference {
-    std::string first;   ///< of the first field
-    std::string second;  ///< of the second
+    std::string first;
+    std::string second;
 };
 /// In the order of forEachProbeSetting(); empty = the same settings. Unknown and known are not the same.
 std::vector<ProbeSettingDifference> differencesOf(const ProbeBakeSettings& first,

@@ -60,8 +60,8 @@ struct ProximityReport {
 };
 /// The grid and how good it is.
 struct ProximityBuild {
-    ProximityGrid grid;      ///< as PF_PROBE stores it
-    ProximityReport report;  ///< for messages
+    ProximityGrid grid;
+    ProximityReport report;
 };
 
 /// Errors: BadStructure (no depth maps, wrong number of records or words); those of checkProximityGrid and of

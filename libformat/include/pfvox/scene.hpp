@@ -36,9 +36,7 @@ struct Sky {
     glm::dvec3 zenith{0.30, 0.48, 0.80};   ///< radiance straight up
     glm::dvec3 horizon{0.72, 0.80, 0.88};  ///< radiance
     glm::dvec3 ground{0.24, 0.23, 0.22};   ///< radiance straight down
-    bool isConstant() const {
-        return zenith == horizon && horizon == ground;
-    }  ///< Whether it is the same everywhere.
+    bool isConstant() const { return zenith == horizon && horizon == ground; }
     bool operator==(const Sky&) const = default;
 };
 
@@ -65,17 +63,17 @@ struct SceneModel {
 };
 /// What a scene.toml says.
 struct Scene {
-    ProbeGridRequest probes;         ///< where probes are to stand
-    Sun sun;                         ///< directional light
-    Sky sky;                         ///< light from everywhere else
-    std::vector<Camera> cameras;     ///< by name
+    ProbeGridRequest probes;
+    Sun sun;
+    Sky sky;
+    std::vector<Camera> cameras;
     std::vector<SceneModel> models;  ///< in the order of the file
     bool operator==(const Scene&) const = default;
 };
 
-inline constexpr std::uint64_t kMaxSceneBytes = 16 << 20;  ///< size of a scene file
-inline constexpr std::uint32_t kMaxProbesPerAxis = 1024;   ///< along one axis
-inline constexpr std::uint32_t kMaxProbes = 1u << 20;      ///< in one grid
+inline constexpr std::uint64_t kMaxSceneBytes = 16 << 20;
+inline constexpr std::uint32_t kMaxProbesPerAxis = 1024;
+inline constexpr std::uint32_t kMaxProbes = 1u << 20;
 
 // ---- The file --------------------------------------------------------------------------------------------
 
@@ -134,10 +132,10 @@ Affine worldFromAsset(const SceneModel& model, const OctreeAsset& asset);
 
 /// A box in the world, in metres. Empty when min > max.
 struct WorldBounds {
-    glm::dvec3 min{std::numeric_limits<double>::infinity()};                        ///< metres
-    glm::dvec3 max{-std::numeric_limits<double>::infinity()};                       ///< metres
-    bool empty() const { return min.x > max.x || min.y > max.y || min.z > max.z; }  ///< nothing included
-    void include(const glm::dvec3& point);  ///< Grows to hold the point.
+    glm::dvec3 min{std::numeric_limits<double>::infinity()};   ///< metres
+    glm::dvec3 max{-std::numeric_limits<double>::infinity()};  ///< metres
+    bool empty() const { return min.x > max.x || min.y > max.y || min.z > max.z; }
+    void include(const glm::dvec3& point);
 };
 
 /// Box of all visible instances.
@@ -164,10 +162,10 @@ struct PlacedAsset {
 };
 /// A scene with the models that it names.
 struct LoadedScene {
-    Scene scene;                     ///< as it was read
+    Scene scene;
     std::vector<PlacedAsset> parts;  ///< in the order of Scene::models; invisible ones are not loaded
-    WorldBounds bounds;              ///< of all parts
-    ProbeGrid probes;                ///< as asked for, or fitted
+    WorldBounds bounds;
+    ProbeGrid probes;  ///< as asked for, or fitted
 
     /// What devices count from: frameOrigin() of the bounds.
     const glm::dvec3& origin() const { return probes.origin; }

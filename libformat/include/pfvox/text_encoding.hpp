@@ -14,7 +14,7 @@ struct CodePoint {
 };
 CodePoint firstCodePoint(std::string_view text);  ///< overlong forms and surrogates are not valid
 
-bool isUtf8(std::string_view text);  ///< Whether all of it is valid.
+bool isUtf8(std::string_view text);
 
 /// UTF-8 of a code point up to U+10FFFF.
 std::string utf8Of(char32_t codePoint);

@@ -25,12 +25,12 @@ namespace pfvox {
 /// Index into AssetInfo::materials.
 using MaterialIndex = std::uint16_t;
 
-inline constexpr int kBrickEdgeLog2 = 3;                                            ///< log2 of kBrickEdge
-inline constexpr int kBrickEdge = 1 << kBrickEdgeLog2;                              ///< voxels
-inline constexpr int kBrickVoxels = kBrickEdge * kBrickEdge * kBrickEdge;           ///< in a brick
-inline constexpr int kRegionEdgeLog2 = 8;                                           ///< log2 of kRegionEdge
-inline constexpr int kRegionEdge = 1 << kRegionEdgeLog2;                            ///< voxels
-inline constexpr int kRegionCells = 1 << (3 * (kRegionEdgeLog2 - kBrickEdgeLog2));  ///< bricks in a region
+inline constexpr int kBrickEdgeLog2 = 3;
+inline constexpr int kBrickEdge = 1 << kBrickEdgeLog2;
+inline constexpr int kBrickVoxels = kBrickEdge * kBrickEdge * kBrickEdge;
+inline constexpr int kRegionEdgeLog2 = 8;
+inline constexpr int kRegionEdge = 1 << kRegionEdgeLog2;
+inline constexpr int kRegionCells = 1 << (3 * (kRegionEdgeLog2 - kBrickEdgeLog2));
 
 /// 8^3 voxels. Bit m of the mask and material m belong to the voxel whose local coordinates interleave to
 /// Morton code m. Materials of empty voxels are unspecified.
@@ -42,23 +42,21 @@ struct Brick {
     void set(std::uint32_t morton, MaterialIndex material) {
         occupancy[morton >> 6] |= std::uint64_t{1} << (morton & 63u);
         materials[morton] = material;
-    }  ///< Makes it solid.
-    void clear(std::uint32_t morton) {
-        occupancy[morton >> 6] &= ~(std::uint64_t{1} << (morton & 63u));
-    }  ///< Empty.
+    }
+    void clear(std::uint32_t morton) { occupancy[morton >> 6] &= ~(std::uint64_t{1} << (morton & 63u)); }
 };
 
 /// A voxel of a list: 8 bytes. Where the list begins is told beside it.
 struct PackedVoxel {
-    std::uint16_t x, y, z;   ///< within its region
-    MaterialIndex material;  ///< what it is made of
-};                           ///< from where the list begins
+    std::uint16_t x, y, z;  ///< within its region
+    MaterialIndex material;
+};  ///< from where the list begins
 
 /// A voxel in a region. Address: the Morton code of its coordinates in the region; bits 9 to 23 are the code
 /// of the cell, bits 0 to 8 that in the brick.
 struct RegionVoxel {
-    std::uint32_t address;   ///< Morton code within its region
-    MaterialIndex material;  ///< what it is made of
+    std::uint32_t address;  ///< Morton code within its region
+    MaterialIndex material;
 };
 
 /// 256^3 voxels: see the head of this file.
@@ -74,9 +72,9 @@ class VoxelRegion {
 
     /// What the 8^3 cell with this Morton code (of its position in the 32^3 table) holds.
     struct Cell {
-        const Brick* brick = nullptr;                                 ///< not null: voxels of their own
-        std::optional<MaterialIndex> material;                        ///< set: one solid cube
-        bool empty() const { return brick == nullptr && !material; }  ///< Whether nothing is in it.
+        const Brick* brick = nullptr;           ///< not null: voxels of their own
+        std::optional<MaterialIndex> material;  ///< set: one solid cube
+        bool empty() const { return brick == nullptr && !material; }
     };
     Cell cell(std::uint32_t cellMorton) const {
         if (uniform_) return {.brick = nullptr, .material = uniform_};
@@ -86,7 +84,7 @@ class VoxelRegion {
         if ((entry & kUniformFlag) != 0)
             return {.brick = nullptr, .material = static_cast<MaterialIndex>(entry & 0xffffu)};
         return {.brick = &brick(entry), .material = std::nullopt};
-    }  ///< By Morton code of bricks.
+    }
 
     /// Bit i = whether cell 64 * block + i holds something of its own (4^3 cells are a block; a brick that
     /// was cleared to nothing counts). Most cells of most regions are empty, so walks that ask for each of
@@ -111,8 +109,8 @@ class VoxelRegion {
     /// Empties the region and moves it elsewhere; memory is kept for what comes next.
     void reset(glm::ivec3 coord);
 
-    std::size_t brickCount() const { return brickCount_; }  ///< bricks with single voxels
-    std::uint64_t memoryBytes() const;                      ///< held by it
+    std::size_t brickCount() const { return brickCount_; }
+    std::uint64_t memoryBytes() const;
 
   private:
     static constexpr std::uint32_t kEmpty = 0xffffffffu;
@@ -160,8 +158,8 @@ class VoxelModel {
 
     /// Number of occupied voxels and their tight box: a walk over all bricks.
     std::uint64_t voxelCount() const;
-    VoxelBox bounds() const;            ///< of solid voxels
-    std::uint64_t memoryBytes() const;  ///< held by it
+    VoxelBox bounds() const;  ///< of solid voxels
+    std::uint64_t memoryBytes() const;
 
   private:
     struct CoordHash {
