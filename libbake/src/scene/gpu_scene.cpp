@@ -1,8 +1,8 @@
+#include <algorithm>
 #include <chrono>
 #include <map>
 #include <pfvox/gpu_scene.hpp>
 
-#include "scene/block_arena.hpp"
 #include "scene/scene_records.hpp"
 #include "scene/wide_tree.hpp"
 
@@ -11,6 +11,49 @@ namespace pfvox::gpu {
 namespace {
 
 using namespace detail;
+
+struct BlockPlace {
+    std::size_t buffer = 0;
+    std::uint64_t offsetBytes = 0;
+};
+
+/// Places many tree blocks in few buffers: a driver allows some thousand allocations, a scene may have more
+/// regions. Blocks are added first, then all buffers are made at once, as large as needed.
+class BlockArena {
+  public:
+    explicit BlockArena(std::uint64_t maxBufferBytes) : maxBufferBytes_(maxBufferBytes) {}
+
+    /// Errors: GpuOutOfMemory when one block is larger than a buffer can be.
+    Result<BlockPlace> add(std::uint64_t sizeBytes) {
+        constexpr std::uint64_t kUsualBufferBytes = 512u << 20;
+        if (sizeBytes > maxBufferBytes_) {
+            return fail(ErrorCode::GpuOutOfMemory,
+                        "an octree block of " + std::to_string(sizeBytes) +
+                            " bytes is larger than a buffer of this device can be");
+        }
+        const std::uint64_t limit = std::min(kUsualBufferBytes, maxBufferBytes_);
+        if (sizes_.empty() || sizes_.back() + sizeBytes > limit) sizes_.push_back(0);
+        const BlockPlace place{.buffer = sizes_.size() - 1, .offsetBytes = sizes_.back()};
+        sizes_.back() += sizeBytes;
+        return place;
+    }
+    Result<void> createBuffers(Device& device) {
+        for (std::size_t i = 0; i < sizes_.size(); ++i) {
+            PFVOX_TRY(Buffer, made, device.createBuffer(sizes_[i], "tree blocks " + std::to_string(i)));
+            buffers_.push_back(std::move(made));
+        }
+        return {};
+    }
+
+    const Buffer& buffer(BlockPlace place) const { return buffers_[place.buffer]; }
+    std::uint64_t address(BlockPlace place) const { return buffer(place).address() + place.offsetBytes; }
+    std::vector<Buffer> takeBuffers() { return std::move(buffers_); }
+
+  private:
+    std::uint64_t maxBufferBytes_;
+    std::vector<std::uint64_t> sizes_;
+    std::vector<Buffer> buffers_;
+};
 
 /// A model on its way to the device, and where its arrays lie in its block.
 struct WideModel {

@@ -2,12 +2,12 @@
 // a .vox file.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
 #include <pfvox/export.hpp>
 
-#include "export/vox_materials.hpp"
 #include "export/vox_writer.hpp"
 
 namespace pfvox {
@@ -165,6 +165,48 @@ Result<void> writeGraph(const OctreeAsset& asset, const std::vector<std::vector<
     return {};
 }
 
+const char* typeName(MaterialType type) {
+    switch (type) {
+        case MaterialType::Metal:
+            return "_metal";
+        case MaterialType::Glass:
+            return "_glass";
+        case MaterialType::Emit:
+            return "_emit";
+        case MaterialType::Plastic:
+            return "_plastic";
+        case MaterialType::Blend:
+            return "_blend";
+        case MaterialType::Media:
+            return "_media";
+        case MaterialType::Diffuse:
+            break;
+    }
+    return "_diffuse";
+}
+
+/// Strength = _emit x 10^_flux with _emit at most 1.
+void addEmission(float strength, VoxDict& dict) {
+    const int flux = strength > 1.0f ? static_cast<int>(std::ceil(std::log10(strength))) : 0;
+    dict.emplace_back("_emit", fmt::format("{}", strength / std::pow(10.0f, static_cast<float>(flux))));
+    dict.emplace_back("_flux", fmt::format("{}", flux));
+}
+
+/// The MATL dictionary of MagicaVoxel (docs/import.md has the mapping back).
+VoxDict matlOf(const Material& material) {
+    VoxDict dict{{"_type", typeName(material.type)}};
+    const auto add = [&](const char* key, float value) { dict.emplace_back(key, fmt::format("{}", value)); };
+    add("_rough", material.roughness);
+    add("_spec", material.specular);
+    add("_ior", material.indexOfRefraction - 1.0f);
+    add("_metal", material.metalness);
+    if (material.type == MaterialType::Emit) addEmission(material.emissionStrength, dict);
+    add("_trans", material.transparency);
+    add("_d", material.density);
+    add("_g", material.phase);
+    return dict;
+}
+
 void writeMaterials(const OctreeAsset& asset, VoxWriter& file) {
     for (std::size_t i = 0; i < asset.layers.size(); ++i) {
         const Layer& layer = asset.layers[i];
@@ -180,7 +222,7 @@ void writeMaterials(const OctreeAsset& asset, VoxWriter& file) {
     }
     file.palette(palette);
     for (std::size_t i = 0; i < asset.materials.size(); ++i)
-        file.material(static_cast<int>(i) + 1, vox_export::matlOf(asset.materials[i]));
+        file.material(static_cast<int>(i) + 1, matlOf(asset.materials[i]));
 }
 
 }  // namespace
