@@ -32,7 +32,7 @@ function(pfvox_compile_shaders target)
       MAIN_DEPENDENCY ${source} DEPFILE ${module}.d VERBATIM
       COMMENT "Compiling shader ${name}")
     add_custom_command(OUTPUT ${cpp}
-      COMMAND ${CMAKE_COMMAND} -DNAME=${name} -DMODULE=${module} -DOUTPUT=${cpp} -P ${_pfvox_embed_script}
+      COMMAND ${CMAKE_COMMAND} -DNAME=${name} -DHEADER=${target}/shaders.hpp -DMODULE=${module} -DOUTPUT=${cpp} -P ${_pfvox_embed_script}
       DEPENDS ${module} ${_pfvox_embed_script} VERBATIM
       COMMENT "Embedding shader ${name}")
     list(APPEND sources ${cpp})

@@ -49,15 +49,36 @@ Error withFile(Error error, const std::filesystem::path& file) {
     return error;
 }
 
+// One spelling for one value.
+
+template <class T>
+requires std::is_arithmetic_v<T> std::string spelled(T value) {
+    return fmt::format("{}", value);
+}
+template <class Enum>
+requires std::is_enum_v<Enum> std::string spelled(Enum value) {
+    return fmt::format("{}", static_cast<int>(value));
+}
+std::string spelled(const std::optional<double>& value) {
+    return value ? spelled(*value) : "source";
+}
+std::string spelled(const std::vector<std::string>& names) {
+    std::string text;
+    for (const std::string& name : names) text += fmt::format("{}:{},", name.size(), name);
+    return text;
+}
+
 }  // namespace
 
 ContentKey contentKey(std::span<const std::byte> source, const ConvertSettings& settings) {
     io::Xxh3_128 hash;
     hash.update(kConverterVersion);
-    hash.update(fmt::format("pf_vox {}.{} hollow {} lod {} zstd {} profile {} ", kPfVoxVersionMajor,
-                            kPfVoxVersionMinor, settings.hollow, settings.build.lod, settings.zstdLevel,
-                            static_cast<int>(settings.profile)));
-    hash.update(canonicalText(settings.import));
+    hash.update(fmt::format("pf_vox {}.{}", kPfVoxVersionMajor, kPfVoxVersionMinor));
+    forEachConvertSetting(
+        [&](const ConvertSetting& setting, const auto& value) {
+            hash.update(fmt::format(" {}={}", setting.key, spelled(value)));
+        },
+        settings);
     hash.update(source);
     return {hash.digest()};
 }

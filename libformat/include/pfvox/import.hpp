@@ -58,9 +58,6 @@ struct ImportSettings {
     bool operator==(const ImportSettings&) const = default;
 };
 
-/// The settings as text, one spelling for one meaning: what the content key hashes.
-std::string canonicalText(const ImportSettings& settings);
-
 inline constexpr double kDefaultVoxelSizeMetres = 0.1;  ///< where neither source nor settings tell
 
 /// A source format that pfvox reads.

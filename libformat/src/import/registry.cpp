@@ -88,17 +88,6 @@ bool looksLikeSource(const std::filesystem::path& file) {
                                [&](const SourceFormat& f) { return f.extension == extension; });
 }
 
-std::string canonicalText(const ImportSettings& settings) {
-    std::string grids;
-    for (const std::string& name : settings.vdb.grids) grids += fmt::format("{}:{},", name.size(), name);
-    return fmt::format(
-        "merge={} hidden={} frame={} voxelSize={} svx.threshold={} vdb.grids={} vdb.threshold={} "
-        "vdb.upAxis={}",
-        settings.merge, settings.includeHidden, settings.frame,
-        settings.voxelSizeMetres ? fmt::format("{}", *settings.voxelSizeMetres) : "source",
-        settings.svx.threshold, grids, settings.vdb.threshold, settings.vdb.upAxis == UpAxis::Y ? "y" : "z");
-}
-
 Result<VoxelAsset> importBytes(std::span<const std::byte> bytes, const std::filesystem::path& file,
                                const ImportSettings& settings, const Limits& limits,
                                Diagnostics& diagnostics) {
