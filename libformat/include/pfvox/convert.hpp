@@ -18,8 +18,6 @@ struct ConvertSettings {
     BuildSettings build;
     int zstdLevel = 3;  ///< 1 to 19
     Profile profile = Profile::Packed;
-
-    bool operator==(const ConvertSettings&) const = default;
 };
 
 /// A setting of a conversion in every form in which somebody meets it. From this table come the options of

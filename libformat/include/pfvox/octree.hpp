@@ -138,7 +138,6 @@ struct OctreeAsset : AssetInfo {
 /// How trees are built.
 struct BuildSettings {
     bool lod = false;  ///< make OctreeRegion::lod
-    bool operator==(const BuildSettings&) const = default;
 };
 
 /// Builds the octrees of every model, exactly minimised: eight full children of one material become one leaf,
