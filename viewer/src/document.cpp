@@ -1,6 +1,7 @@
 #include "document.hpp"
 
 #include <algorithm>
+#include <pfvox/bake.hpp>
 #include <system_error>
 #include <utility>
 

@@ -7,6 +7,7 @@
 #include <system_error>
 #include <utility>
 
+#include "compose/model_edits.hpp"
 #include "png.hpp"
 #include "view_passes.hpp"
 
