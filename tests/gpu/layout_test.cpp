@@ -46,7 +46,7 @@ std::vector<std::uint32_t> expectedWords() {
             PFVOX_WORD(HitRecord, t),
             PFVOX_WORD(HitRecord, normal) + 2,
             PFVOX_WORD(HitRecord, material),
-            PFVOX_WORD(HitRecord, capped),
+            PFVOX_WORD(HitRecord, stepLimitReached),
             PFVOX_WORD(ViewParameters, samplesPerPixel),
             PFVOX_WORD(ViewParameters, mode),
             PFVOX_WORD(ViewParameters, exposure),

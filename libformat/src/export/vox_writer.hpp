@@ -83,7 +83,7 @@ class VoxWriter {
         for (const VoxDict& frame : t.frames) content += voxDict(frame);
         return chunk("nTRN", content);
     }
-    VoxWriter& group(int id, std::span<const std::int32_t> children, const VoxDict& attributes = {}) {
+    VoxWriter& group(int id, const std::vector<std::int32_t>& children, const VoxDict& attributes = {}) {
         return chunk("nGRP", voxBytes(id) + voxDict(attributes) +
                                  voxBytes(static_cast<std::int32_t>(children.size())) + voxInts(children));
     }
