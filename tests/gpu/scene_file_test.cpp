@@ -92,7 +92,7 @@ TEST_F(SceneFileOnGpu, RaysMeetWhatTheReferenceMeets) {
                   << " ties, " << c.disagreements << " disagreements\n";
         EXPECT_EQ(c.rays, 2000u);
         EXPECT_EQ(c.disagreements, 0u) << family.name << ": " << c.firstDisagreement;
-        EXPECT_EQ(c.capped, 0u);
+        EXPECT_EQ(c.stepLimitReached, 0u);
     }
 }
 

@@ -118,7 +118,7 @@ TEST_F(SceneTest, EveryFiniteRayEnds) {
         std::size_t hits = 0;
         for (std::size_t i = 0; i < rays.size(); ++i) {
             const gpu::GpuHit& hit = batch.hits[i];
-            EXPECT_FALSE(hit.capped) << i;
+            EXPECT_FALSE(hit.stepLimitReached) << i;
             if (!hit.hit) continue;
             ++hits;
             if (mode == gpu::RayMode::AnyHit) continue;

@@ -32,7 +32,7 @@ class TraceDifferential : public GpuTest {
                       << " ties at edges, " << c.disagreements << " disagreements\n";
             EXPECT_EQ(c.rays, raysPerFamily);
             EXPECT_EQ(c.disagreements, 0u) << family.name << ": " << c.firstDisagreement;
-            EXPECT_EQ(c.capped, 0u) << family.name;
+            EXPECT_EQ(c.stepLimitReached, 0u) << family.name;
         }
     }
 };
