@@ -25,7 +25,7 @@ using vox_file::VoxVoxel;
 class VoxScene {
   public:
     /// Returns the number of the model. Edges are at most 256.
-    int addModel(glm::ivec3 size, std::span<const VoxVoxel> voxels) {
+    int addModel(glm::ivec3 size, const std::vector<VoxVoxel>& voxels) {
         file_.model({size.x, size.y, size.z}, voxels);
         return models_++;
     }
@@ -301,7 +301,7 @@ void writeLiar(const std::filesystem::path& file) {
     // The size is a lie, the rest is in order: one voxel in a model.
     const VoxVoxel voxel{1, 2, 3, 4};
     VoxScene scene;
-    scene.addModel({65536, 65536, 1}, {&voxel, 1});
+    scene.addModel({65536, 65536, 1}, {voxel});
     scene.write(file);
     std::filesystem::resize_file(file,
                                  64);  // within the palette, as such a file comes: the end is missing, too

@@ -71,10 +71,10 @@ class VoxWriter {
         chunks_ += voxChunk(id, content);
         return *this;
     }
-    VoxWriter& model(const std::array<std::int32_t, 3>& size, std::span<const VoxVoxel> voxels) {
+    VoxWriter& model(const std::array<std::int32_t, 3>& size, const std::vector<VoxVoxel>& voxels) {
         chunk("SIZE", voxInts(size));
         std::string list = voxBytes(static_cast<std::int32_t>(voxels.size()));
-        list.append(reinterpret_cast<const char*>(voxels.data()), voxels.size_bytes());
+        list.append(reinterpret_cast<const char*>(voxels.data()), sizeof(VoxVoxel) * voxels.size());
         return chunk("XYZI", list);
     }
     VoxWriter& transform(const Transform& t) {
