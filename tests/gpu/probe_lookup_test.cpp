@@ -155,8 +155,8 @@ class CompactTwin {
         const glm::dvec3 last = glm::dvec3{grid_.counts} - 1.0;
         const glm::dvec3 beyond = glm::max(glm::max(-at, at - last), 0.0);
         const double outside = std::clamp(2.0 * std::max({beyond.x, beyond.y, beyond.z}) - 1.0, 0.0, 1.0);
-        const double fraction = 1.0 - outside * (1.0 - std::min(seen_ / 0.1, 1.0));
-        if (fraction >= 1.0) return glm::vec3{root * root};
+        const double inside = 1.0 - outside * (1.0 - std::min(seen_ / 0.1, 1.0));
+        if (inside >= 1.0) return glm::vec3{root * root};
         sum_ = glm::dvec3{0.0};
         weights_ = 0.0;
         for (int z = -2; z <= 3; ++z)
@@ -169,7 +169,7 @@ class CompactTwin {
                     const glm::dvec3 steps = glm::dvec3{place} - glm::clamp(at, glm::dvec3{0.0}, last);
                     add(place, std::exp2(-glm::dot(steps, steps)));
                 }
-        const glm::dvec3 mixed = glm::mix(sum_ / weights_, root, fraction);
+        const glm::dvec3 mixed = glm::mix(sum_ / weights_, root, inside);
         return glm::vec3{mixed * mixed};
     }
 

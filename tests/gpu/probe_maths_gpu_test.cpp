@@ -29,8 +29,8 @@ class ProbeMathsGpu : public GpuTest {
             in.metres = 1e-4f + uniform(random) * 1.1f * farMetres;
             const float magnitude = std::exp2(uniform(random) * 48 - 28);
             in.light = glm::vec3{uniform(random), uniform(random), normal(random)} * magnitude;
-            in.edge = 1u << (random() % 11);
-            if (random() % 4 == 0) in.edge = 14;
+            in.resolution = 1u << (random() % 11);
+            if (random() % 4 == 0) in.resolution = 14;
             in.depthScaleAndLogRange = {scale, std::log(scale * farMetres + 1)};
             in.code = static_cast<std::uint32_t>(random() % 65535);
             in.word = static_cast<std::uint32_t>(random());
@@ -69,9 +69,9 @@ class ProbeMathsGpu : public GpuTest {
 
 /// Texels that differ only because the direction lies on their common edge.
 bool onAnEdge(const ProbeMathsInput& in) {
-    const glm::vec2 t = shared::texelCoordinate(in.direction, in.edge);
+    const glm::vec2 t = shared::texelCoordinate(in.direction, in.resolution);
     const glm::vec2 off = glm::abs(t - glm::round(t));
-    return std::min(off.x, off.y) < 1e-5f * static_cast<float>(in.edge);
+    return std::min(off.x, off.y) < 1e-5f * static_cast<float>(in.resolution);
 }
 
 std::uint32_t difference(std::uint32_t a, std::uint32_t b) {

@@ -50,8 +50,8 @@ TEST(ProbeDetail, FiguresAndMapsOfAKnownProbe) {
     ASSERT_TRUE(detail->minDepthMetres);
     EXPECT_NEAR(*detail->minDepthMetres, 2.5f, 0.01f);
     EXPECT_NEAR(detail->surfaceFraction.value_or(0.0f), 0.5f, 0.05f);
-    EXPECT_EQ(detail->light.edge, 16u);
-    EXPECT_EQ(detail->depth.edge, 32u);
+    EXPECT_EQ(detail->light.resolution, 16u);
+    EXPECT_EQ(detail->depth.resolution, 32u);
     EXPECT_EQ(detail->normals.pixels.size(), 32u * 32u);
     EXPECT_EQ(detail->light.pixels[0] >> 16 & 0xffu, 255u) << "the brightest channel is white";
     EXPECT_GT(std::ranges::count(detail->depth.pixels, 0xff000000u), 400) << "misses are black";
@@ -64,7 +64,7 @@ TEST(ProbeDetail, AnInactiveProbeHasNoMapsAndOthersDoNotExist) {
     const Result<ProbeDetail> detail = readProbeDetail(folder / "f.pf_probe", 3, diagnostics);
     ASSERT_TRUE(detail) << describe(detail.error());
     EXPECT_EQ(detail->record.state, ProbeState::Inactive);
-    EXPECT_EQ(detail->light.edge, 0u);
+    EXPECT_EQ(detail->light.resolution, 0u);
     EXPECT_FALSE(readProbeDetail(folder / "f.pf_probe", 12, diagnostics));
     EXPECT_FALSE(readProbeDetail(folder / "none.pf_probe", 0, diagnostics));
 }
