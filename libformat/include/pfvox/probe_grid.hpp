@@ -12,10 +12,10 @@ namespace pfvox {
 
 /// Where the probes stand. Any counts; probe (x, y, z) has the index x + counts.x * (y + counts.y * z).
 struct ProbeGrid {
-    glm::dvec3 origin{0.0};  ///< in the world, metres: what all else of a field counts from (frameOrigin)
     glm::vec3 start{0.0f};   ///< position of probe (0, 0, 0), metres
     glm::vec3 step{1.0f};    ///< distance of neighbors along each axis, metres, > 0
     glm::uvec3 counts{1u};   ///< each at least 1, the product below 2^32
+    glm::dvec3 origin{0.0};  ///< in the world, metres: what all else of a field counts from (frameOrigin)
 
     std::uint64_t probeCount() const { return std::uint64_t{counts.x} * counts.y * counts.z; }
     std::uint32_t indexOf(glm::uvec3 at) const { return at.x + counts.x * (at.y + counts.y * at.z); }

@@ -67,7 +67,7 @@ Result<ProbeGrid> fitProbeGrid(const ProbeGridRequest& request, const WorldBound
     if (!encloses && !asGiven)
         diagnostics.note("scene-grid-smaller", "the probe grid does not enclose all models");
     const glm::dvec3 origin = frameOrigin(bounds);
-    return ProbeGrid{.origin = origin, .start = start - origin, .step = step, .counts = glm::uvec3(wanted)};
+    return ProbeGrid{.start = start - origin, .step = step, .counts = glm::uvec3(wanted), .origin = origin};
 }
 
 }  // namespace pfvox
