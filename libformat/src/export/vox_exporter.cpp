@@ -167,7 +167,7 @@ Result<void> writeGraph(const OctreeAsset& asset, const std::vector<std::vector<
 void writeMaterials(const OctreeAsset& asset, ChunkWriter& chunks) {
     for (std::size_t i = 0; i < asset.layers.size(); ++i) {
         const Layer& layer = asset.layers[i];
-        Dict attributes{{"_name", layer.name}};
+        Dict attributes{{"_name", layer.name.str()}};
         if (layer.hidden) attributes.emplace_back("_hidden", "1");
         chunks.add("LAYR", Content().i32(static_cast<std::int64_t>(i)).dict(attributes).i32(-1));
     }
