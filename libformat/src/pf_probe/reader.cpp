@@ -93,13 +93,15 @@ Result<ProbeField> ProbeFileReader::State::readField() const {
     for (const ProbeLayer layer : probe::kAllLayers)
         largest = std::max(largest, head.info.resolution.bytesOf(layer));
     const auto threads = static_cast<std::uint64_t>(tbb::this_task_arena::max_concurrency());
-    PFVOX_TRY(const auto, frames,
-              container::Charge::take(budget, std::min<std::uint64_t>(threads, range.size()), 2 * largest));
-    ProbeField field{.info = head.info, .probes = {}, .proximity = {}};
-    if (head.proximity) PFVOX_CHECK(budget.take(head.proximity->probes.size(), sizeof(std::uint32_t)));
-    field.proximity = head.proximity;
-    PFVOX_CHECK(budget.take(range.size(), head.info.resolution.bytesPerProbe()));
-    PFVOX_CHECK(budget.resize(field.probes, range.size()));
+    const auto busy = std::min<std::uint64_t>(threads, range.size());
+    PFVOX_TRY(const auto, frames, container::Charge::take(budget, busy, 2 * largest));
+    PFVOX_TRY(const auto, probes,
+              container::Charge::take(budget, range.size(),
+                                      head.info.resolution.bytesPerProbe() + sizeof(ProbeData)));
+    const std::uint64_t indices = head.proximity ? head.proximity->probes.size() : 0;
+    PFVOX_TRY(const auto, cells, container::Charge::take(budget, indices, sizeof(std::uint32_t)));
+    ProbeField field{.info = head.info, .probes = {}, .proximity = head.proximity};
+    field.probes.resize(range.size());
     container::MemoryBudget scratch(~std::uint64_t{0});
     std::mutex mutex;
     std::optional<Error> fault;

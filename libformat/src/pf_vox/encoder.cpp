@@ -199,8 +199,8 @@ Result<void> checkRecords(const InfoRecords& info, const ModelRecords& models) {
 Result<std::vector<std::byte>> encode(const OctreeAsset& asset, const EncodeSettings& settings) {
     PFVOX_CHECK(checkLods(asset));
     NameTable names;
-    const InfoRecords info(asset, names);
     ModelRecords models(asset, settings.profile, names);
+    const InfoRecords info(asset, names);
     if (models.regions.size() >= layout::kNoRegion / 2 || models.palettes.size() > 0xffffffffu) {
         return fail(ErrorCode::LimitExceeded,
                     fmt::format("{} regions do not fit one file", models.regions.size()));
