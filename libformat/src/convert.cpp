@@ -3,6 +3,7 @@
 #include <pfvox/convert.hpp>
 #include <pfvox/hollow.hpp>
 
+#include "guarded.hpp"
 #include "io/files.hpp"
 #include "io/hash.hpp"
 #include "octree/lanes.hpp"
@@ -12,7 +13,7 @@ namespace pfvox {
 namespace {
 
 /// Changes whenever the bytes of an output can change.
-constexpr std::string_view kConverterVersion = PFVOX_VERSION " revision 2";
+constexpr std::string_view kConverterVersion = PFVOX_VERSION " revision 3";
 
 /// Seconds since the last call.
 class Stopwatch {
@@ -89,7 +90,7 @@ Result<std::vector<std::byte>> convertBytes(std::span<const std::byte> bytes,
                                             Diagnostics& diagnostics, ConvertReport& report) {
     Stopwatch watch;
     report.sourceBytes = bytes.size();
-    const auto built = [&]() -> Result<OctreeAsset> {
+    const auto built = guarded([&]() -> Result<OctreeAsset> {
         PFVOX_TRY(VoxelAsset, asset, importBytes(bytes, source, settings.import, limits, diagnostics));
         compactMaterials(asset);
         report.importSeconds = watch.lap();
@@ -98,7 +99,7 @@ Result<std::vector<std::byte>> convertBytes(std::span<const std::byte> bytes,
             compactMaterials(asset);  // some were only inside
         }
         return buildOctrees(asset, limits, settings.build);
-    }();
+    });
     if (!built) return tl::make_unexpected(withFile(built.error(), source));
     count(*built, report);
     report.buildSeconds = watch.lap();

@@ -57,7 +57,8 @@ TEST(ProbePredictor, MapsOfARoomShrinkToATenth) {
     EXPECT_LT(stored.size(), bytes.size() / 10);
     RecordProperty("stored_bytes", static_cast<int>(stored.size()));
     std::vector<std::byte> back(bytes.size());
-    ASSERT_TRUE(probe::unpackFrame(ProbeLayer::DepthNormal, *frame, stored, back));
+    container::MemoryBudget budget(8u << 20);
+    ASSERT_TRUE(probe::unpackFrame(ProbeLayer::DepthNormal, *frame, stored, back, budget));
     EXPECT_TRUE(std::ranges::equal(back, bytes));
 }
 

@@ -60,9 +60,9 @@ inline OpenFile openFile(const Bytes& file) {
     return open;
 }
 
-/// Closes the file again, all sections raw, sizes and hashes right; counts and everything else as they were
-/// left.
-inline Bytes closeFile(OpenFile open) {
+/// Closes the file again, sizes and hashes right; counts and everything else as they were left. Sections are
+/// raw, or zstd frames: bombs.
+inline Bytes closeFile(OpenFile open, bool compressed = false) {
     open.header.sectionCount = static_cast<std::uint32_t>(open.parts.size());
     const std::size_t headBytes = sizeof open.header + open.parts.size() * sizeof(layout::Section);
     Bytes file(headBytes);
@@ -71,12 +71,19 @@ inline Bytes closeFile(OpenFile open) {
         file.resize((file.size() + 63) / 64 * 64);
         part.entry.codec = layout::Codec::Raw;
         part.entry.offset = file.size();
-        part.entry.storedBytes = part.entry.rawBytes = part.raw.size();
+        part.entry.rawBytes = part.raw.size();
         // The maps in DATA of a probe file have hashes of their own.
         const bool hasHash = std::string_view(part.entry.fourcc.data(), 4) != "DATA";
         part.entry.rawHash = hasHash ? io::xxh3_64(std::as_bytes(std::span(part.raw))) : 0;
-        const auto raw = std::as_bytes(std::span(part.raw));
-        file.insert(file.end(), raw.begin(), raw.end());
+        if (compressed && hasHash) {
+            std::vector<std::uint8_t> frame(ZSTD_compressBound(part.raw.size()));
+            frame.resize(ZSTD_compress(frame.data(), frame.size(), part.raw.data(), part.raw.size(), 1));
+            part.entry.codec = layout::Codec::Zstd;
+            part.raw = std::move(frame);
+        }
+        part.entry.storedBytes = part.raw.size();
+        const auto stored = std::as_bytes(std::span(part.raw));
+        file.insert(file.end(), stored.begin(), stored.end());
         std::memcpy(file.data() + sizeof open.header + i * sizeof part.entry, &part.entry, sizeof part.entry);
     }
     open.header.fileBytes = file.size();

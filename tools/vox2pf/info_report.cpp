@@ -158,7 +158,7 @@ std::string infoText(const FileInfo& info, const Reporter& reporter, bool comple
     };
     std::string text =
         reporter.styled(Reporter::Style::Strong, escaped(info.file.string())) + "\n" + headline(info);
-    for (const std::string& note : info.asset.source.notes) text += "  " + escaped(note) + "\n";
+    for (const Name& note : info.asset.source.notes) text += "  " + escaped(note) + "\n";
     text += title("Models", info.models.size()) + modelTable(info, maxRows);
     if (!info.asset.instances.empty()) {
         text += title("Instances", info.asset.instances.size()) + instanceTable(info, maxRows);

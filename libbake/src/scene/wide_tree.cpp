@@ -161,7 +161,7 @@ Result<WideTree> widen(const OctreeModel& model, std::uint32_t firstMaterial) {
     TopWidener(model, roots, top).run();
     place(tree);
     if (!fits(tree.end)) {
-        return fail(ErrorCode::GpuOutOfMemory, "model '" + model.name +
+        return fail(ErrorCode::GpuOutOfMemory, "model '" + model.name.str() +
                                                    "' has more nodes or voxels than one "
                                                    "model on the GPU can have");
     }

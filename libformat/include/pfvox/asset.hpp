@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <pfvox/math.hpp>
+#include <pfvox/name.hpp>
 #include <string>
 #include <vector>
 
@@ -35,11 +36,11 @@ struct Material {
     float roughness = 1.0f;                     ///< [0, 1]
     float specular = 0.5f;                      ///< [0, 1]
     float indexOfRefraction = 1.5f;             ///< >= 1
-    float emissionStrength = 0.0f;              ///< radiance = linear base color x strength
+    float emissionStrength = 0.0f;              ///< >= 0; radiance = linear base color x strength
     float transparency = 0.0f;                  ///< [0, 1]
-    float density = 0.0f;                       ///< of media, per voxel edge
+    float density = 0.0f;                       ///< >= 0; of media, per voxel edge
     float phase = 0.0f;                         ///< Henyey-Greenstein g of media, [-1, 1]
-    std::string name = {};                      ///< of the source, if it has names
+    Name name = {};                             ///< of the source, if it has names
 
     bool operator==(const Material&) const = default;
 };
@@ -54,31 +55,31 @@ bool isOpaque(const Material& material);
 struct Instance {
     std::uint32_t model = 0;                   ///< index into the asset's models
     Affine worldFromModel = identityAffine();  ///< voxel units of the model to metres
-    std::string name = {};                     ///< of the source; need not be unique
+    Name name = {};                            ///< of the source; need not be unique
     std::int32_t layer = -1;                   ///< index into the asset's layers, -1 = none
     bool hidden = false;                       ///< it or its layer is hidden
 };
 /// A layer of the source.
 struct Layer {
-    std::string name = {};  ///< of the source
-    bool hidden = false;    ///< with all of its instances
+    Name name = {};       ///< of the source
+    bool hidden = false;  ///< with all of its instances
     bool operator==(const Layer&) const = default;
 };
 
-/// A camera that the source file stored, in metres and degrees.
+/// A camera that the source file stored, in metres and degrees. A PF_VOX file keeps it as float32.
 struct Camera {
     std::string name = {};              ///< unique within a scene
     glm::dvec3 position{0.0};           ///< metres
     glm::dvec3 target{0.0, 0.0, -1.0};  ///< metres; not the position
-    double fovYDegrees = 45.0;          ///< 1 to 170
+    double fovYDegrees = 45.0;          ///< 1 to 179; in a scene file at most 170
     bool operator==(const Camera&) const = default;
 };
 
 /// Where an asset comes from. Holds nothing of the run: no path, time or user.
 struct SourceInfo {
-    std::string format;              ///< "vox", "svx", "vdb", ...
-    double voxelSizeMetres = 1.0;    ///< edge of one voxel in the world
-    std::vector<std::string> notes;  ///< what the source file says about itself
+    Name format;                   ///< "vox", "svx", "vdb", ...
+    double voxelSizeMetres = 1.0;  ///< edge of one voxel in the world, > 0
+    std::vector<Name> notes;       ///< what the source file says about itself
 };
 
 /// Everything but the voxels.

@@ -10,8 +10,9 @@ namespace pfvox {
 /// names the figure that was hit.
 struct Limits {
     std::uint64_t maxFileBytes = 16ull << 30;  ///< size of one source or asset file
-    std::uint64_t maxMemoryBytes =
-        16ull << 30;  ///< decoded size of one asset, and of the voxel model built from a source
+    /// All that reading an asset or probe file allocates beside the file itself, and the voxel model built
+    /// from a source.
+    std::uint64_t maxMemoryBytes = 16ull << 30;
     std::uint32_t maxModels = 1u << 20;     ///< models in one file
     std::uint32_t maxInstances = 1u << 22;  ///< instances after the scene graph is expanded
     std::uint32_t maxGraphDepth = 256;      ///< nesting of a scene graph

@@ -115,7 +115,7 @@ struct OctreeRegion {
 /// One model: a top tree whose leaves are regions, in node order then slot order. A model of at most 256^3
 /// has an empty top tree and one region. An empty model has no region.
 struct OctreeModel {
-    std::string name;                           ///< of the source
+    Name name;                                  ///< of the source
     std::uint32_t depth = 0;                    ///< levels in all; the octree cube has edge 2^depth
     glm::ivec3 originVoxels{0};                 ///< lower corner of the octree cube in model voxels
     NodeTree topTree;                           ///< depth = max(0, OctreeModel::depth - 8)

@@ -58,10 +58,12 @@ class ProbeFileReader {
 
     /// Fills `words` (info().resolution.bytesOf(layer) bytes) with a map: straight into a mapped staging
     /// buffer, for example. Precondition: has(probe, layer). Errors: FileNotReadable, Truncated (the file
-    /// became shorter), ChecksumMismatch, BadStructure.
+    /// became shorter), ChecksumMismatch, BadStructure, LimitExceeded (memory).
     Result<void> readLayer(std::uint32_t probe, ProbeLayer layer, std::span<std::byte> words) const;
     /// The probe with all its maps. Errors: as readLayer.
     Result<ProbeData> readProbe(std::uint32_t probe) const;
+    /// All probes, read in parallel in the calling TBB arena. Errors: as readLayer; LimitExceeded.
+    Result<ProbeField> readField() const;
     /// The frame as it is stored, unchecked: for copying into another file.
     Result<std::vector<std::byte>> readStored(std::uint32_t probe, ProbeLayer layer) const;
 

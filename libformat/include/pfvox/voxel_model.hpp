@@ -135,7 +135,7 @@ class VoxelRegion {
 /// A sparse grid of voxels with materials. Coordinates may be any int32, negative too.
 class VoxelModel {
   public:
-    std::string name;  ///< of the source
+    Name name;  ///< of the source
 
     /// Inserts or replaces one voxel.
     void set(glm::ivec3 voxel, MaterialIndex material);

@@ -210,7 +210,7 @@ VoxDict matlOf(const Material& material) {
 void writeMaterials(const OctreeAsset& asset, VoxWriter& file) {
     for (std::size_t i = 0; i < asset.layers.size(); ++i) {
         const Layer& layer = asset.layers[i];
-        VoxDict attributes{{"_name", layer.name}};
+        VoxDict attributes{{"_name", layer.name.str()}};
         if (layer.hidden) attributes.emplace_back("_hidden", "1");
         file.layer(static_cast<int>(i), attributes);
     }

@@ -12,7 +12,7 @@ namespace {
 void makeNamesUtf8(VoxelAsset& asset, Diagnostics& diagnostics) {
     std::size_t converted = 0;
     std::string first;
-    const auto convert = [&](std::string& name) {
+    const auto convert = [&](auto& name) {
         if (isUtf8(name)) return;
         name = utf8FromWindows1252(name);
         if (converted++ == 0) first = name;
@@ -22,7 +22,7 @@ void makeNamesUtf8(VoxelAsset& asset, Diagnostics& diagnostics) {
     for (Layer& layer : asset.layers) convert(layer.name);
     for (Camera& camera : asset.cameras) convert(camera.name);
     for (Material& material : asset.materials) convert(material.name);
-    for (std::string& note : asset.source.notes) convert(note);
+    for (Name& note : asset.source.notes) convert(note);
     if (converted == 0) return;
     diagnostics.warn(
         "name-encoding",

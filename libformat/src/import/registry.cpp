@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "guarded.hpp"
 #include "import/asset_check.hpp"
 #include "import/importer.hpp"
 #include "import/merge.hpp"
@@ -98,7 +99,8 @@ Result<VoxelAsset> importBytes(std::span<const std::byte> bytes, const std::file
     };
     for (const import::Importer& importer : importers()) {
         if (!importer.recognises(source)) continue;
-        return withFile(importMerged(importer, source, settings, limits, diagnostics));
+        return withFile(
+            guarded([&] { return importMerged(importer, source, settings, limits, diagnostics); }));
     }
     return withFile(fail(ErrorCode::UnsupportedFormat, nameForeignContent(bytes)));
 }

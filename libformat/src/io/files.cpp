@@ -1,5 +1,6 @@
 #include "io/files.hpp"
 
+#include "guarded.hpp"
 #include "io/random_file.hpp"
 
 namespace pfvox::io {
@@ -10,12 +11,15 @@ Result<void> checkReadable(const std::filesystem::path& file, std::uint64_t maxB
 }
 
 Result<FileBytes> readFile(const std::filesystem::path& file, std::uint64_t maxBytes) {
-    PFVOX_TRY(const RandomFile, input, RandomFile::openForReading(file, maxBytes));
-    const std::uint64_t size = input.sizeBytes();
-    FileBytes contents(size);
-    PFVOX_TRY(const std::size_t, present, input.readFrom(0, contents.bytes()));
-    contents.shrink(present);  // the file may have become shorter
-    return contents;
+    auto result = guarded([&]() -> Result<FileBytes> {
+        PFVOX_TRY(const RandomFile, input, RandomFile::openForReading(file, maxBytes));
+        FileBytes contents(input.sizeBytes());
+        PFVOX_TRY(const std::size_t, present, input.readFrom(0, contents.bytes()));
+        contents.shrink(present);  // the file may have become shorter
+        return contents;
+    });
+    if (!result && result.error().file.empty()) result.error().file = file;
+    return result;
 }
 
 Result<void> writeFileAtomically(const std::filesystem::path& file, std::span<const std::byte> bytes,

@@ -3,12 +3,16 @@
 #include <xxhash.h>
 
 #include <cstring>
+#include <new>
 
 namespace pfvox::io {
 
 struct Xxh3_128::State {
     XXH3_state_t* xxh = XXH3_createState();
-    State() { XXH3_128bits_reset(xxh); }
+    State() {
+        if (xxh == nullptr) throw std::bad_alloc();
+        XXH3_128bits_reset(xxh);
+    }
     State(const State&) = delete;
     State& operator=(const State&) = delete;
     ~State() { XXH3_freeState(xxh); }

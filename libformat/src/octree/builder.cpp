@@ -9,6 +9,7 @@
 #include <pfvox/octree.hpp>
 #include <span>
 
+#include "guarded.hpp"
 #include "octree/lod_builder.hpp"
 #include "octree/region_builder.hpp"
 #include "voxel_partition.hpp"
@@ -98,8 +99,8 @@ Result<NodeTree> buildTopTree(std::span<const RegionSource> regions, glm::ivec3 
 }
 
 /// Everything of a model but the content of its regions, for which it adds tasks.
-Result<OctreeModel> planModel(const std::string& name, std::vector<RegionSource> regions,
-                              const Limits& limits, std::vector<RegionTask>& tasks) {
+Result<OctreeModel> planModel(const Name& name, std::vector<RegionSource> regions, const Limits& limits,
+                              std::vector<RegionTask>& tasks) {
     OctreeModel model;
     model.name = name;
     const glm::ivec3 minCoord = sortRegions(regions);
@@ -186,8 +187,8 @@ void summarise(OctreeModel& model) {
     }
 }
 
-Result<OctreeModel> buildModel(const std::string& name, std::vector<RegionSource> sources,
-                               std::size_t materialCount, const Limits& limits) {
+Result<OctreeModel> buildModel(const Name& name, std::vector<RegionSource> sources, std::size_t materialCount,
+                               const Limits& limits) {
     std::vector<RegionTask> tasks;
     PFVOX_TRY(OctreeModel, model, planModel(name, std::move(sources), limits, tasks));
     PFVOX_CHECK(runTasks(tasks, materialCount));
@@ -195,15 +196,7 @@ Result<OctreeModel> buildModel(const std::string& name, std::vector<RegionSource
     return model;
 }
 
-}  // namespace
-
-Result<OctreeModel> buildOctree(const VoxelList& list, std::size_t materialCount, const Limits& limits) {
-    const VoxelPartition partition(list.voxels, list.origin);
-    return buildModel(list.name, sourcesOf(partition), materialCount, limits);
-}
-
-Result<OctreeAsset> buildOctrees(const VoxelAsset& asset, const Limits& limits,
-                                 const BuildSettings& settings) {
+Result<OctreeAsset> buildAll(const VoxelAsset& asset, const Limits& limits, const BuildSettings& settings) {
     if (asset.materials.size() > limits.maxMaterials) {
         return fail(ErrorCode::LimitExceeded, fmt::format("{} materials, more than maxMaterials = {}",
                                                           asset.materials.size(), limits.maxMaterials));
@@ -223,6 +216,20 @@ Result<OctreeAsset> buildOctrees(const VoxelAsset& asset, const Limits& limits,
     }
     for (Material& material : built.materials) material = quantised(material);
     return built;
+}
+
+}  // namespace
+
+Result<OctreeModel> buildOctree(const VoxelList& list, std::size_t materialCount, const Limits& limits) {
+    return guarded([&] {
+        const VoxelPartition partition(list.voxels, list.origin);
+        return buildModel(list.name, sourcesOf(partition), materialCount, limits);
+    });
+}
+
+Result<OctreeAsset> buildOctrees(const VoxelAsset& asset, const Limits& limits,
+                                 const BuildSettings& settings) {
+    return guarded([&] { return buildAll(asset, limits, settings); });
 }
 
 }  // namespace pfvox

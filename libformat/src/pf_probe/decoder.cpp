@@ -1,10 +1,10 @@
 // decodePfProbe, loadPfProbe and validation: all of a file, by the reader that also reads single probes.
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <pfvox/probe_file.hpp>
 
+#include "container/findings.hpp"
 #include "pf_probe/records.hpp"
 #include "shared/probe_maths.glsl.h"
 
@@ -12,34 +12,7 @@ namespace pfvox {
 
 namespace {
 
-Result<ProbeField> readAll(const ProbeFileReader& reader, const Limits& limits) {
-    const std::uint64_t bytesPerProbe = reader.info().resolution.bytesPerProbe() + sizeof(ProbeData);
-    if (reader.info().range.size() > limits.maxMemoryBytes / bytesPerProbe) {
-        return fail(ErrorCode::LimitExceeded,
-                    fmt::format("{} probes of {} bytes, more than maxMemoryBytes = {}",
-                                reader.info().range.size(), bytesPerProbe, limits.maxMemoryBytes));
-    }
-    ProbeField field{.info = reader.info(), .probes = {}, .proximity = reader.proximity()};
-    field.probes.resize(reader.info().range.size());
-    std::vector<Result<void>> results(field.probes.size());
-    tbb::parallel_for(std::size_t{0}, field.probes.size(), [&](std::size_t i) {
-        auto probe = reader.readProbe(reader.info().range.first + static_cast<std::uint32_t>(i));
-        if (probe) {
-            field.probes[i] = *std::move(probe);
-        } else {
-            results[i] = tl::make_unexpected(std::move(probe).error());
-        }
-    });
-    for (Result<void>& result : results) PFVOX_CHECK(std::move(result));
-    return field;
-}
-
-Finding findingOf(const Error& error) {
-    return {.id = std::string(toString(error.code)),
-            .context = error.context,
-            .offsetBytes = error.offsetBytes,
-            .message = error.message};
-}
+using container::findingOf;
 
 /// What the layers of one probe say about each other.
 class ProbeCheck {
@@ -96,7 +69,9 @@ class Validation {
 
     std::vector<Finding> run() {
         const ProbeRange range = reader_.info().range;
-        for (std::uint32_t probe = range.first; probe < range.end; ++probe) checkProbe(probe);
+        for (std::uint32_t probe = range.first;
+             probe < range.end && findings_.size() < container::kMaxFindings; ++probe)
+            checkProbe(probe);
         return std::move(findings_);
     }
 
@@ -134,9 +109,13 @@ class Validation {
     std::vector<Finding> findings_;
 };
 
-std::vector<Finding> validate(const Result<ProbeFileReader>& reader) {
-    if (!reader) return {findingOf(reader.error())};
-    return Validation(*reader).run();
+template <class Open>
+std::vector<Finding> validate(const Open& open) {
+    return container::findingsOf([&]() -> Result<std::vector<Finding>> {
+        DiagnosticList ignored;
+        PFVOX_TRY(const ProbeFileReader, reader, open(ignored));
+        return Validation(reader).run();
+    });
 }
 
 }  // namespace
@@ -144,25 +123,23 @@ std::vector<Finding> validate(const Result<ProbeFileReader>& reader) {
 Result<ProbeField> decodePfProbe(std::span<const std::byte> bytes, const Limits& limits,
                                  Diagnostics& diagnostics) {
     PFVOX_TRY(const ProbeFileReader, reader, ProbeFileReader::overBytes(bytes, limits, diagnostics));
-    return readAll(reader, limits);
+    return reader.readField();
 }
 
 Result<ProbeField> loadPfProbe(const std::filesystem::path& file, const Limits& limits,
                                Diagnostics& diagnostics) {
     PFVOX_TRY(const ProbeFileReader, reader, ProbeFileReader::open(file, limits, diagnostics));
-    auto field = readAll(reader, limits);
+    auto field = reader.readField();
     if (!field) field.error().file = file;
     return field;
 }
 
 std::vector<Finding> validatePfProbe(std::span<const std::byte> bytes, const Limits& limits) {
-    DiagnosticList ignored;
-    return validate(ProbeFileReader::overBytes(bytes, limits, ignored));
+    return validate([&](Diagnostics& ignored) { return ProbeFileReader::overBytes(bytes, limits, ignored); });
 }
 
 std::vector<Finding> validatePfProbeFile(const std::filesystem::path& file, const Limits& limits) {
-    DiagnosticList ignored;
-    return validate(ProbeFileReader::open(file, limits, ignored));
+    return validate([&](Diagnostics& ignored) { return ProbeFileReader::open(file, limits, ignored); });
 }
 
 }  // namespace pfvox

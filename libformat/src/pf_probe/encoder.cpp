@@ -4,11 +4,14 @@
 
 #include <algorithm>
 
+#include "guarded.hpp"
 #include "pf_probe/composer.hpp"
 
 namespace pfvox {
 
-Result<std::vector<std::byte>> encodePfProbe(const ProbeField& field, const ProbeEncodeSettings& settings) {
+namespace {
+
+Result<std::vector<std::byte>> encode(const ProbeField& field, const ProbeEncodeSettings& settings) {
     PFVOX_CHECK(checkProbeInfo(field.info));
     if (field.probes.size() != field.info.range.size()) {
         return fail(ErrorCode::BadStructure, fmt::format("{} probes for the range {}:{}", field.probes.size(),
@@ -35,6 +38,12 @@ Result<std::vector<std::byte>> encodePfProbe(const ProbeField& field, const Prob
     PFVOX_TRY(auto, file, probe::composeHead(plan));
     for (const auto& probe : packed) file.insert(file.end(), probe->stored.begin(), probe->stored.end());
     return file;
+}
+
+}  // namespace
+
+Result<std::vector<std::byte>> encodePfProbe(const ProbeField& field, const ProbeEncodeSettings& settings) {
+    return guarded([&] { return encode(field, settings); });
 }
 
 }  // namespace pfvox

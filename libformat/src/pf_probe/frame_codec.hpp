@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "container/memory_budget.hpp"
 #include "pf_probe/layout.hpp"
 
 namespace pfvox::probe {
@@ -21,16 +22,10 @@ Result<probe_layout::Frame> packFrame(ProbeLayer layer, std::span<const std::byt
                                       std::vector<std::byte>& stored);
 
 /// Fills `words` and checks their hash. Errors: BadStructure (the frame does not hold so many bytes),
-/// ChecksumMismatch.
+/// ChecksumMismatch, LimitExceeded.
 Result<void> unpackFrame(ProbeLayer layer, const probe_layout::Frame& frame,
-                         std::span<const std::byte> stored, std::span<std::byte> words);
-
-/// One zstd frame of the bytes, or the bytes as they are where that is not smaller.
-struct PackedBytes {
-    layout::Codec codec = layout::Codec::Raw;
-    std::vector<std::byte> bytes;
-};
-Result<PackedBytes> packBytes(std::span<const std::byte> raw, int zstdLevel);
+                         std::span<const std::byte> stored, std::span<std::byte> words,
+                         container::MemoryBudget& budget);
 
 /// "raw", "predicted".
 std::string_view toString(probe_layout::FrameCodec codec);

@@ -3,10 +3,9 @@
 
 #include <optional>
 #include <pfvox/error.hpp>
-#include <pfvox/limits.hpp>
 #include <vector>
 
-#include "pf_probe/byte_source.hpp"
+#include "container/section_reader.hpp"
 #include "pf_probe/records.hpp"
 
 namespace pfvox::probe {
@@ -21,7 +20,8 @@ struct FileHead {
 
 /// Errors: BadMagic, Truncated, UnsupportedVersion, UnsupportedFeature, ChecksumMismatch, BadStructure,
 /// BadValue, BadReference, LimitExceeded; those of the source.
-Result<FileHead> readHead(const ByteSource& source, const Limits& limits, Diagnostics& diagnostics);
+Result<FileHead> readHead(const container::ByteSource& source, container::MemoryBudget& budget,
+                          Diagnostics& diagnostics);
 
 /// "light of probe 12", for messages.
 std::string frameName(std::uint32_t probe, ProbeLayer layer);

@@ -1,5 +1,5 @@
 // Layout of a PF_PROBE 1.1 file, byte for byte. docs/format-pf_probe.md says the same in words; change both
-// or none. Header and section table are those of PF_VOX (pf_vox/layout.hpp) with another magic.
+// or none. Header and section table are those of container/layout.hpp.
 #pragma once
 
 #include <array>
@@ -8,12 +8,11 @@
 #include <limits>
 #include <pfvox/pf_probe.hpp>
 
-#include "pf_vox/layout.hpp"
+#include "container/layout.hpp"
 
 namespace pfvox::probe_layout {
 
-/// "PFPRB", then line ends and a control character that a text-mode transfer would change.
-inline constexpr std::array<std::uint8_t, 8> kMagic{'P', 'F', 'P', 'R', 'B', '\r', '\n', 0x1a};
+/// As the magic of files.
 inline constexpr std::array<std::uint8_t, 8> kJournalMagic{'P', 'F', 'P', 'R', 'J', '\r', '\n', 0x1a};
 
 /// INFO; the bytes of both names follow.

@@ -5,6 +5,7 @@
 #include <pfvox/files.hpp>
 #include <pfvox/probe_file.hpp>
 
+#include "guarded.hpp"
 #include "pf_probe/composer.hpp"
 #include "pf_probe/frame_codec.hpp"
 #include "pf_probe/probe_list.hpp"
@@ -92,35 +93,32 @@ Result<std::vector<Shard>> openShards(std::span<const std::filesystem::path> fil
     return shards;
 }
 
-std::vector<std::uint32_t> probesOf(ProbeRange range) {
-    std::vector<std::uint32_t> probes;
-    for (std::uint32_t p = range.first; p < range.end; ++p) probes.push_back(p);
-    return probes;
-}
-
 /// Shards, which are sorted, must follow each other without overlap and without holes.
 Result<void> checkCover(const std::vector<Shard>& shards, const std::filesystem::path& output,
                         bool allowPart) {
     const ProbeFieldInfo& first = shards.front().reader.info();
     std::uint32_t end = allowPart ? first.range.first : 0;
-    std::vector<std::uint32_t> absent;
+    std::vector<ProbeRange> absent;
+    std::uint64_t absentCount = 0;
+    const auto noteHole = [&](ProbeRange hole) {
+        if (hole.size() == 0) return;
+        absent.push_back(hole);
+        absentCount += hole.size();
+    };
     for (std::size_t i = 0; i < shards.size(); ++i) {
         const ProbeRange range = shards[i].reader.info().range;
         if (range.first < end) {
-            const auto twice = probesOf({range.first, std::min(end, range.end)});
-            return refuse(shards[i].file, fmt::format("probes {} are also in another shard ({})",
-                                                      probe::listProbes(twice), shards[i - 1].file.string()));
+            const ProbeRange twice{range.first, std::min(end, range.end)};
+            return refuse(shards[i].file,
+                          fmt::format("probes {} are also in another shard ({})",
+                                      probe::listProbes(std::span(&twice, 1)), shards[i - 1].file.string()));
         }
-        const auto hole = probesOf({end, range.first});
-        absent.insert(absent.end(), hole.begin(), hole.end());
+        noteHole({end, range.first});
         end = range.end;
     }
-    if (!allowPart) {
-        const auto hole = probesOf({end, static_cast<std::uint32_t>(first.grid.probeCount())});
-        absent.insert(absent.end(), hole.begin(), hole.end());
-    }
+    if (!allowPart) noteHole({end, static_cast<std::uint32_t>(first.grid.probeCount())});
     if (absent.empty()) return {};
-    return refuse(output, fmt::format("{} of {} probes are in no shard: {}", absent.size(),
+    return refuse(output, fmt::format("{} of {} probes are in no shard: {}", absentCount,
                                       first.grid.probeCount(), probe::listProbes(absent)));
 }
 
@@ -165,11 +163,8 @@ Result<void> copyProbe(const ProbeFileReader& reader, std::uint32_t index, io::A
     return {};
 }
 
-}  // namespace
-
-Result<void> mergeProbeFields(std::span<const std::filesystem::path> shards,
-                              const std::filesystem::path& output, const ProbeMergeSettings& settings,
-                              const Limits& limits, Diagnostics& diagnostics) {
+Result<void> merge(std::span<const std::filesystem::path> shards, const std::filesystem::path& output,
+                   const ProbeMergeSettings& settings, const Limits& limits, Diagnostics& diagnostics) {
     if (shards.empty()) return refuse(output, "there are no shards to merge");
     PFVOX_TRY(const auto, opened, openShards(shards, limits, diagnostics));
     PFVOX_CHECK(checkCover(opened, output, settings.allowPart));
@@ -178,17 +173,27 @@ Result<void> mergeProbeFields(std::span<const std::filesystem::path> shards,
     if (opened.size() == 1 && opened[0].reader.proximity()) plan.proximity = &*opened[0].reader.proximity();
     if (settings.proximity) plan.proximity = &*settings.proximity;
     for (const Shard& shard : opened) {
-        for (const std::uint32_t index : probesOf(shard.reader.info().range))
+        const ProbeRange range = shard.reader.info().range;
+        for (std::uint32_t index = range.first; index < range.end; ++index)
             plan.probes.push_back(storedProbe(shard.reader, index));
     }
     PFVOX_TRY(const auto, head, probe::composeHead(plan));
     PFVOX_TRY(io::AtomicFile, file, io::AtomicFile::create(output));
     PFVOX_CHECK(file.write(head));
     for (const Shard& shard : opened) {
-        for (const std::uint32_t index : probesOf(shard.reader.info().range))
+        const ProbeRange range = shard.reader.info().range;
+        for (std::uint32_t index = range.first; index < range.end; ++index)
             PFVOX_CHECK(copyProbe(shard.reader, index, file));
     }
     return file.commit();
+}
+
+}  // namespace
+
+Result<void> mergeProbeFields(std::span<const std::filesystem::path> shards,
+                              const std::filesystem::path& output, const ProbeMergeSettings& settings,
+                              const Limits& limits, Diagnostics& diagnostics) {
+    return guarded([&] { return merge(shards, output, settings, limits, diagnostics); });
 }
 
 }  // namespace pfvox

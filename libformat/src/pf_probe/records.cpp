@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "container/section_writer.hpp"
 #include "io/byte_cursor.hpp"
 #include "io/hash.hpp"
 #include "pf_probe/probe_settings.hpp"
@@ -16,13 +17,12 @@ namespace pfvox::probe {
 
 namespace {
 
+using container::appendBytes;
 using probe_layout::Frame;
 using probe_layout::FrameCodec;
 
 /// More probes need 32-bit indices in the proximity grid.
 constexpr std::uint64_t kMaxProbesOf16Bits = 65534;
-/// More than zstd can shrink anything.
-constexpr std::uint64_t kMaxCompressionRatio = 1u << 16;
 
 std::array<float, 3> toArray(glm::vec3 v) {
     return {v.x, v.y, v.z};
@@ -37,38 +37,25 @@ glm::uvec3 toVec(const std::array<std::uint32_t, 3>& a) {
     return {a[0], a[1], a[2]};
 }
 
-void append(std::vector<std::byte>& bytes, std::span<const std::byte> more) {
-    // Not insert(): at -O3 GCC 12 warns falsely that it overflows.
-    const std::size_t at = bytes.size();
-    bytes.resize(at + more.size());
-    std::ranges::copy(more, bytes.begin() + static_cast<std::ptrdiff_t>(at));
-}
-
-template <class T>
-std::span<const std::byte> bytesOf(const T& value) {
-    return std::as_bytes(std::span(&value, 1));
-}
-
 std::string toText(std::span<const std::byte> bytes) {
     return std::string(io::asText(bytes));
 }
 
 template <class Index>
-void appendIndices(std::vector<std::byte>& bytes, std::span<const std::uint32_t> probes) {
+void appendIndices(std::vector<std::uint8_t>& bytes, std::span<const std::uint32_t> probes) {
     std::vector<Index> indices(probes.size());
     for (std::size_t i = 0; i < probes.size(); ++i) indices[i] = static_cast<Index>(probes[i]);
-    append(bytes, std::as_bytes(std::span(indices)));
+    appendBytes(bytes, std::span<const Index>(indices));
 }
 
+/// Precondition: bytes for all of `probes`.
 template <class Index>
-std::vector<std::uint32_t> readIndices(std::span<const std::byte> bytes) {
-    std::vector<std::uint32_t> probes(bytes.size() / sizeof(Index));
+void readIndices(std::span<const std::byte> bytes, std::vector<std::uint32_t>& probes) {
     for (std::size_t i = 0; i < probes.size(); ++i) {
         Index index;
         std::memcpy(&index, bytes.data() + i * sizeof index, sizeof index);
         probes[i] = index == static_cast<Index>(~Index{0}) ? kNoProbe : index;
     }
-    return probes;
 }
 
 }  // namespace
@@ -94,18 +81,18 @@ Result<void> checkRecord(const ProbeRecord& record) {
     const auto bad = [](const char* message) { return fail(ErrorCode::BadValue, message); };
     if (record.state > ProbeState::Relocated) return bad("unknown state");
     if (!std::isfinite(record.offset.x) || !std::isfinite(record.offset.y) || !std::isfinite(record.offset.z))
-        return bad("the offset is no number");
+        return bad("the offset is not a finite number");
     if (record.state != ProbeState::Relocated && record.offset != glm::vec3{0.0f})
         return bad("has an offset and is not relocated");
     if (record.flags != 0) return bad("unknown flags");
     const auto isFraction = [](float v) { return v >= 0 && std::isfinite(v); };
     if (!isFraction(record.error.value_or(0.0f)) || !isFraction(record.noisyTileFraction) ||
         record.noisyTileFraction > 1)
-        return bad("error or fraction of noisy tiles are no numbers from 0 up");
+        return bad("error or fraction of noisy tiles are out of range");
     return {};
 }
 
-std::vector<std::byte> infoBytes(const ProbeFieldInfo& info) {
+std::vector<std::uint8_t> infoBytes(const ProbeFieldInfo& info) {
     const probe_layout::Info fixed{.gridStart = toArray(info.grid.start),
                                    .gridStep = toArray(info.grid.step),
                                    .gridCounts = toArray(info.grid.counts),
@@ -129,10 +116,10 @@ std::vector<std::byte> infoBytes(const ProbeFieldInfo& info) {
                                    .shaderHash = info.shaderHash.bytes,
                                    .deviceNameBytes = static_cast<std::uint32_t>(info.deviceName.size()),
                                    .toolNameBytes = static_cast<std::uint32_t>(info.toolName.size())};
-    std::vector<std::byte> bytes;
-    append(bytes, bytesOf(fixed));
-    append(bytes, std::as_bytes(std::span(info.deviceName)));
-    append(bytes, std::as_bytes(std::span(info.toolName)));
+    std::vector<std::uint8_t> bytes;
+    appendBytes(bytes, std::span(&fixed, 1));
+    appendBytes(bytes, std::span<const char>(info.deviceName));
+    appendBytes(bytes, std::span<const char>(info.toolName));
     return bytes;
 }
 
@@ -209,7 +196,7 @@ Result<void> checkFrames(const ProbeResolution& resolution, const ProbeRecord& r
         if (rawBytes == 0 && (frame.storedBytes != 0 || frame.rawHash != 0 || !isRaw))
             return fail(ErrorCode::BadStructure,
                         fmt::format("{}: an inactive probe has it", toString(layer)));
-        if (!isRaw && rawBytes / kMaxCompressionRatio > frame.storedBytes)
+        if (!isRaw && container::leastFrameBytes(rawBytes) > frame.storedBytes)
             return fail(ErrorCode::BadStructure, fmt::format("{}: no frame is so small", toString(layer)));
         if (isRaw ? frame.storedBytes != rawBytes : frame.storedBytes >= rawBytes) {
             return fail(ErrorCode::BadStructure, fmt::format("{}: {} bytes are stored for {}",
@@ -219,14 +206,14 @@ Result<void> checkFrames(const ProbeResolution& resolution, const ProbeRecord& r
     return {};
 }
 
-std::vector<std::byte> proximityBytes(const ProbeFieldInfo& info, const ProximityGrid& grid) {
+std::vector<std::uint8_t> proximityBytes(const ProbeFieldInfo& info, const ProximityGrid& grid) {
     const bool isNarrow = info.grid.probeCount() <= kMaxProbesOf16Bits;
     const probe_layout::Proximity fixed{.start = toArray(grid.start),
                                         .step = toArray(grid.step),
                                         .counts = toArray(grid.counts),
                                         .indexBits = isNarrow ? 16u : 32u};
-    std::vector<std::byte> bytes;
-    append(bytes, bytesOf(fixed));
+    std::vector<std::uint8_t> bytes;
+    appendBytes(bytes, std::span(&fixed, 1));
     if (isNarrow) {
         appendIndices<std::uint16_t>(bytes, grid.probes);
     } else {
@@ -235,7 +222,8 @@ std::vector<std::byte> proximityBytes(const ProbeFieldInfo& info, const Proximit
     return bytes;
 }
 
-Result<ProximityGrid> readProximity(const ProbeFieldInfo& info, std::span<const std::byte> bytes) {
+Result<ProximityGrid> readProximity(const ProbeFieldInfo& info, std::span<const std::byte> bytes,
+                                    container::MemoryBudget& budget) {
     io::ByteCursor cursor(bytes);
     const auto fixed = cursor.read<probe_layout::Proximity>();
     if (!fixed) return fail(ErrorCode::BadStructure, "is too short");
@@ -248,8 +236,13 @@ Result<ProximityGrid> readProximity(const ProbeFieldInfo& info, std::span<const 
     ProximityGrid grid{.start = toVec(fixed->start),
                        .step = toVec(fixed->step),
                        .counts = toVec(fixed->counts),
-                       .probes = expectedBits == 16 ? readIndices<std::uint16_t>(*indices)
-                                                    : readIndices<std::uint32_t>(*indices)};
+                       .probes = {}};
+    PFVOX_CHECK(budget.resize(grid.probes, indices->size() / (expectedBits / 8)));
+    if (expectedBits == 16) {
+        readIndices<std::uint16_t>(*indices, grid.probes);
+    } else {
+        readIndices<std::uint32_t>(*indices, grid.probes);
+    }
     PFVOX_CHECK(checkProximityGrid(info, grid));
     return grid;
 }

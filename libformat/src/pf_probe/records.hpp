@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "container/memory_budget.hpp"
 #include "pf_probe/layout.hpp"
 
 namespace pfvox::probe {
@@ -32,7 +33,7 @@ std::uint64_t hashOf(const ProbeRecord& record, const Frames& frames);
 /// Domains of the values of a record, which is a file's or a baker's. Errors: BadValue.
 Result<void> checkRecord(const ProbeRecord& record);
 
-std::vector<std::byte> infoBytes(const ProbeFieldInfo& info);
+std::vector<std::uint8_t> infoBytes(const ProbeFieldInfo& info);
 /// Errors: BadStructure, BadValue.
 Result<ProbeFieldInfo> readInfo(std::span<const std::byte> bytes);
 
@@ -44,9 +45,10 @@ Result<ProbeRecord> fromRecord(const probe_layout::Record& record);
 /// UnsupportedFeature.
 Result<void> checkFrames(const ProbeResolution& resolution, const ProbeRecord& record, const Frames& frames);
 
-std::vector<std::byte> proximityBytes(const ProbeFieldInfo& info, const ProximityGrid& grid);
-/// Errors: BadStructure, BadValue, BadReference.
-Result<ProximityGrid> readProximity(const ProbeFieldInfo& info, std::span<const std::byte> bytes);
+std::vector<std::uint8_t> proximityBytes(const ProbeFieldInfo& info, const ProximityGrid& grid);
+/// Errors: BadStructure, BadValue, BadReference, LimitExceeded.
+Result<ProximityGrid> readProximity(const ProbeFieldInfo& info, std::span<const std::byte> bytes,
+                                    container::MemoryBudget& budget);
 
 /// No cell may name an inactive probe of this file. Errors: BadReference.
 Result<void> checkProximityStates(const ProbeFieldInfo& info, const ProximityGrid& grid,

@@ -6,13 +6,11 @@
 #include <span>
 #include <vector>
 
-#include "pf_vox/section_reader.hpp"
-
 namespace pfvox {
 
 enum class FaultPolicy {
     StopAtFirst,
-    CollectAll,  ///< go on with every part that does not depend on the faulty one, and check bounds too
+    CollectAll,  ///< go on with every part that does not depend on the faulty one, and check contents too
 };
 
 struct ReadOutcome {
@@ -20,6 +18,7 @@ struct ReadOutcome {
     std::vector<Error> faults;  ///< in file order of what was read
 };
 
+/// Throws std::bad_alloc.
 ReadOutcome readAsset(std::span<const std::byte> file, const Limits& limits, FaultPolicy policy,
                       Diagnostics& diagnostics);
 

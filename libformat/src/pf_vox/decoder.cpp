@@ -2,6 +2,9 @@
 #include <fmt/format.h>
 #include <pfvox/pf_vox.hpp>
 
+#include "container/file_head.hpp"
+#include "container/findings.hpp"
+#include "guarded.hpp"
 #include "io/files.hpp"
 #include "pf_vox/asset_reader.hpp"
 
@@ -28,9 +31,11 @@ std::vector<std::string> PfVoxHeader::featureNames() const {
 
 Result<OctreeAsset> decodePfVox(std::span<const std::byte> bytes, const Limits& limits,
                                 Diagnostics& diagnostics) {
-    ReadOutcome outcome = readAsset(bytes, limits, FaultPolicy::StopAtFirst, diagnostics);
-    if (!outcome.faults.empty()) return tl::make_unexpected(std::move(outcome.faults.front()));
-    return std::move(outcome.asset);
+    return guarded([&]() -> Result<OctreeAsset> {
+        ReadOutcome outcome = readAsset(bytes, limits, FaultPolicy::StopAtFirst, diagnostics);
+        if (!outcome.faults.empty()) return tl::make_unexpected(std::move(outcome.faults.front()));
+        return std::move(outcome.asset);
+    });
 }
 
 Result<OctreeAsset> loadPfVox(const std::filesystem::path& file, const Limits& limits,
@@ -41,8 +46,12 @@ Result<OctreeAsset> loadPfVox(const std::filesystem::path& file, const Limits& l
     return asset;
 }
 
-Result<PfVoxHeader> readPfVoxHeader(std::span<const std::byte> bytes) {
-    PFVOX_TRY(const FileHead, head, readHead(bytes));
+namespace {
+
+Result<PfVoxHeader> readHeader(std::span<const std::byte> bytes) {
+    container::MemoryBudget budget(2 * bytes.size());  // more than all tables it can hold
+    PFVOX_TRY(const auto, head,
+              container::readHead(container::MemorySource(bytes), container::kPfVox, budget));
     PfVoxHeader header{.versionMajor = head.header.versionMajor,
                        .versionMinor = head.header.versionMinor,
                        .requiredFeatures = head.header.requiredFeatures,
@@ -50,6 +59,7 @@ Result<PfVoxHeader> readPfVoxHeader(std::span<const std::byte> bytes) {
                        .fileBytes = head.header.fileBytes,
                        .contentKey = {head.header.contentKey},
                        .sections = {}};
+    header.sections.reserve(head.sections.size());
     for (const layout::Section& s : head.sections) {
         header.sections.push_back({.fourcc = std::string(s.fourcc.data(), s.fourcc.size()),
                                    .regionId = s.region,
@@ -61,16 +71,20 @@ Result<PfVoxHeader> readPfVoxHeader(std::span<const std::byte> bytes) {
     return header;
 }
 
+}  // namespace
+
+Result<PfVoxHeader> readPfVoxHeader(std::span<const std::byte> bytes) {
+    return guarded([&] { return readHeader(bytes); });
+}
+
 std::vector<Finding> validatePfVox(std::span<const std::byte> bytes, const Limits& limits) {
-    DiagnosticList ignored;
-    std::vector<Finding> findings;
-    for (Error& fault : readAsset(bytes, limits, FaultPolicy::CollectAll, ignored).faults) {
-        findings.push_back({.id = std::string(toString(fault.code)),
-                            .context = std::move(fault.context),
-                            .offsetBytes = fault.offsetBytes,
-                            .message = std::move(fault.message)});
-    }
-    return findings;
+    return container::findingsOf([&]() -> Result<std::vector<Finding>> {
+        DiagnosticList ignored;
+        std::vector<Finding> findings;
+        for (Error& fault : readAsset(bytes, limits, FaultPolicy::CollectAll, ignored).faults)
+            findings.push_back(container::findingOf(std::move(fault)));
+        return findings;
+    });
 }
 
 }  // namespace pfvox

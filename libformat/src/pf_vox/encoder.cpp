@@ -3,54 +3,20 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
-#include <cstring>
-#include <map>
 #include <pfvox/pf_vox.hpp>
 
+#include "guarded.hpp"
 #include "octree/node_planes.hpp"
-#include "pf_vox/layout.hpp"
+#include "pf_vox/names.hpp"
+#include "pf_vox/record_rules.hpp"
 #include "pf_vox/region_writer.hpp"
-#include "pf_vox/section_writer.hpp"
 
 namespace pfvox {
 
 namespace {
 
-/// The NAME section: every different string once; index 0 is the empty string.
-class NameTable {
-  public:
-    NameTable() { add(""); }
-
-    std::uint32_t add(const std::string& name) {
-        const auto [entry, isNew] = indexOf_.try_emplace(name, static_cast<std::uint32_t>(names_.size()));
-        if (isNew) names_.push_back(name);
-        return entry->second;
-    }
-    SectionContent section() const {
-        SectionContent s{.fourcc = "NAME", .count = names_.size()};
-        std::uint32_t end = 0;
-        const auto append = [&](std::uint32_t value) {
-            const auto* bytes = reinterpret_cast<const std::uint8_t*>(&value);
-            s.raw.insert(s.raw.end(), bytes, bytes + sizeof value);
-        };
-        append(end);
-        for (const std::string& name : names_) append(end += static_cast<std::uint32_t>(name.size()));
-        for (const std::string& name : names_) s.raw.insert(s.raw.end(), name.begin(), name.end());
-        return s;
-    }
-
-  private:
-    std::map<std::string, std::uint32_t> indexOf_;
-    std::vector<std::string> names_;
-};
-
-template <class Record>
-SectionContent recordSection(std::string_view fourcc, const std::vector<Record>& records) {
-    SectionContent section{.fourcc = fourcc, .count = records.size()};
-    section.raw.resize(records.size() * sizeof(Record));
-    if (!records.empty()) std::memcpy(section.raw.data(), records.data(), section.raw.size());
-    return section;
-}
+using container::recordSection;
+using container::SectionContent;
 
 std::uint16_t unorm16(float v) {
     return static_cast<std::uint16_t>(std::lround(std::clamp(v, 0.0f, 1.0f) * 65535.0f));
@@ -88,6 +54,15 @@ layout::Instance toLayout(const Instance& instance, NameTable& names) {
         }
     }
     return record;
+}
+
+layout::Camera toLayout(const Camera& camera, NameTable& names) {
+    const glm::vec3 p{camera.position};
+    const glm::vec3 t{camera.target};
+    return {.position = {p.x, p.y, p.z},
+            .target = {t.x, t.y, t.z},
+            .fovYDegrees = static_cast<float>(camera.fovYDegrees),
+            .name = names.add(camera.name)};
 }
 
 layout::Model toLayout(const OctreeModel& model, std::uint32_t firstRegion, NameTable& names) {
@@ -139,14 +114,7 @@ Result<void> checkLod(const OctreeRegion& region, std::size_t materialCount) {
     return {};
 }
 
-Result<void> checkReferences(const OctreeAsset& asset) {
-    for (std::size_t i = 0; i < asset.instances.size(); ++i) {
-        if (asset.instances[i].model >= asset.models.size()) {
-            return fail(ErrorCode::BadReference,
-                        fmt::format("instance {} places model {}, but there are {} models", i,
-                                    asset.instances[i].model, asset.models.size()));
-        }
-    }
+Result<void> checkLods(const OctreeAsset& asset) {
     for (const OctreeModel& model : asset.models) {
         for (const OctreeRegion& region : model.regions)
             PFVOX_CHECK(checkLod(region, asset.materials.size()));
@@ -155,14 +123,14 @@ Result<void> checkReferences(const OctreeAsset& asset) {
 }
 
 /// MODL, REGN, TOPT or TOPN, and PALT: the tables that say where everything is.
-struct ModelTables {
+struct ModelRecords {
     std::vector<layout::Model> models;
     std::vector<layout::Region> regions;
     SectionContent topTrees;
     std::vector<std::uint16_t> palettes;
     std::vector<const OctreeRegion*> sources;  ///< of each region record
 
-    ModelTables(const OctreeAsset& asset, Profile profile, NameTable& names)
+    ModelRecords(const OctreeAsset& asset, Profile profile, NameTable& names)
         : topTrees(emptyTopTrees(profile)) {
         for (const OctreeModel& model : asset.models) {
             models.push_back(toLayout(model, static_cast<std::uint32_t>(regions.size()), names));
@@ -176,67 +144,90 @@ struct ModelTables {
     }
 };
 
-void addInfoSections(const OctreeAsset& asset, NameTable& names, std::vector<SectionContent>& sections) {
+/// MATL, INST, LAYR, CAMR and META.
+struct InfoRecords {
     std::vector<layout::Material> materials;
-    for (const Material& m : asset.materials) materials.push_back(toLayout(m, names));
-    sections.push_back(recordSection("MATL", materials));
-
     std::vector<layout::Instance> instances;
-    for (const Instance& i : asset.instances) instances.push_back(toLayout(i, names));
-    sections.push_back(recordSection("INST", instances));
-
     std::vector<layout::Layer> layers;
-    for (const Layer& l : asset.layers) {
-        layers.push_back({.name = names.add(l.name), .flags = l.hidden ? layout::kLayerHidden : 0});
-    }
-    if (!layers.empty()) sections.push_back(recordSection("LAYR", layers));
-
     std::vector<layout::Camera> cameras;
-    for (const Camera& c : asset.cameras) {
-        const glm::vec3 p{c.position};
-        const glm::vec3 t{c.target};
-        cameras.push_back({.position = {p.x, p.y, p.z},
-                           .target = {t.x, t.y, t.z},
-                           .fovYDegrees = static_cast<float>(c.fovYDegrees),
-                           .name = names.add(c.name)});
-    }
-    if (!cameras.empty()) sections.push_back(recordSection("CAMR", cameras));
+    layout::Meta meta{};
+    std::vector<std::uint32_t> notes;
 
-    const layout::Meta meta{.voxelSizeMetres = asset.source.voxelSizeMetres,
-                            .format = names.add(asset.source.format),
-                            .noteCount = static_cast<std::uint32_t>(asset.source.notes.size())};
-    SectionContent metaSection{.fourcc = "META", .count = 1, .raw = std::vector<std::uint8_t>(sizeof meta)};
-    std::memcpy(metaSection.raw.data(), &meta, sizeof meta);
-    for (const std::string& note : asset.source.notes) {
-        const std::uint32_t index = names.add(note);
-        const auto* bytes = reinterpret_cast<const std::uint8_t*>(&index);
-        metaSection.raw.insert(metaSection.raw.end(), bytes, bytes + sizeof index);
+    InfoRecords(const OctreeAsset& asset, NameTable& names) {
+        for (const Material& m : asset.materials) materials.push_back(toLayout(m, names));
+        for (const Instance& i : asset.instances) instances.push_back(toLayout(i, names));
+        for (const Layer& l : asset.layers)
+            layers.push_back({.name = names.add(l.name), .flags = l.hidden ? layout::kLayerHidden : 0});
+        for (const Camera& c : asset.cameras) cameras.push_back(toLayout(c, names));
+        meta = {.voxelSizeMetres = asset.source.voxelSizeMetres,
+                .format = names.add(asset.source.format),
+                .noteCount = static_cast<std::uint32_t>(asset.source.notes.size())};
+        for (const Name& note : asset.source.notes) notes.push_back(names.add(note));
     }
-    sections.push_back(std::move(metaSection));
+
+    void addTo(std::vector<SectionContent>& sections) const {
+        sections.push_back(recordSection("MATL", materials));
+        sections.push_back(recordSection("INST", instances));
+        if (!layers.empty()) sections.push_back(recordSection("LAYR", layers));
+        if (!cameras.empty()) sections.push_back(recordSection("CAMR", cameras));
+        sections.push_back(recordSection("META", std::vector{meta}));
+        container::appendBytes(sections.back().raw, std::span(notes));
+    }
+};
+
+/// What the reader would refuse is not written.
+Result<void> checkRecords(const InfoRecords& info, const ModelRecords& models) {
+    Result<void> result;
+    const FaultSink stop = [&](std::string_view, Error fault) {
+        result = tl::make_unexpected(std::move(fault));
+        return false;
+    };
+    constexpr Limits kNone{.maxRegions = ~0u, .maxModelDepth = ~0u};
+    const bool isSound =
+        checkInfo({.materials = info.materials,
+                   .instances = info.instances,
+                   .layerCount = info.layers.size(),
+                   .cameras = info.cameras,
+                   .meta = info.meta},
+                  stop) &&
+        checkPlacements(info.instances, models.models.size(), stop) &&
+        checkModels({models.models, models.regions, models.palettes}, info.materials.size(), kNone, stop);
+    if (!isSound && result) return fail(ErrorCode::Internal, "records are refused without a reason");
+    return result;
+}
+
+Result<std::vector<std::byte>> encode(const OctreeAsset& asset, const EncodeSettings& settings) {
+    PFVOX_CHECK(checkLods(asset));
+    NameTable names;
+    ModelRecords models(asset, settings.profile, names);
+    const InfoRecords info(asset, names);
+    if (models.regions.size() >= layout::kNoRegion / 2 || models.palettes.size() > 0xffffffffu) {
+        return fail(ErrorCode::LimitExceeded,
+                    fmt::format("{} regions do not fit one file", models.regions.size()));
+    }
+    PFVOX_CHECK(checkRecords(info, models));
+    std::vector<SectionContent> sections;
+    info.addTo(sections);
+    sections.push_back(recordSection("MODL", models.models));
+    sections.push_back(recordSection("REGN", models.regions));
+    if (!models.topTrees.raw.empty()) sections.push_back(std::move(models.topTrees));
+    sections.push_back(recordSection("PALT", models.palettes));
+    PFVOX_TRY(auto, nameSection, names.section());
+    sections.push_back(std::move(nameSection));
+    addRegionSections(models.sources, asset.materials, settings.profile, sections);
+    return container::writeSections(
+        std::move(sections), {.format = container::kPfVox,
+                              .versionMinor = kPfVoxVersionMinor,
+                              .requiredFeatures = settings.profile == Profile::Resident ? kPfVoxResident : 0,
+                              .optionalFeatures = asset.hollowed ? kPfVoxHollow : 0,
+                              .contentKey = settings.contentKey,
+                              .zstdLevel = settings.zstdLevel});
 }
 
 }  // namespace
 
 Result<std::vector<std::byte>> encodePfVox(const OctreeAsset& asset, const EncodeSettings& settings) {
-    PFVOX_CHECK(checkReferences(asset));
-    NameTable names;
-    ModelTables tables(asset, settings.profile, names);
-    if (tables.regions.size() >= layout::kNoRegion / 2 || tables.palettes.size() > 0xffffffffu) {
-        return fail(ErrorCode::LimitExceeded,
-                    fmt::format("{} regions do not fit one file", tables.regions.size()));
-    }
-    std::vector<SectionContent> sections;
-    addInfoSections(asset, names, sections);
-    sections.push_back(recordSection("MODL", tables.models));
-    sections.push_back(recordSection("REGN", tables.regions));
-    if (!tables.topTrees.raw.empty()) sections.push_back(std::move(tables.topTrees));
-    sections.push_back(recordSection("PALT", tables.palettes));
-    sections.push_back(names.section());
-
-    addRegionSections(tables.sources, asset.materials, settings.profile, sections);
-    const FileTraits traits{.requiredFeatures = settings.profile == Profile::Resident ? kPfVoxResident : 0,
-                            .optionalFeatures = asset.hollowed ? kPfVoxHollow : 0};
-    return writeSections(std::move(sections), traits, settings);
+    return guarded([&] { return encode(asset, settings); });
 }
 
 }  // namespace pfvox

@@ -1,150 +1,114 @@
 #include "pf_vox/info_reader.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <cstring>
 
 namespace pfvox {
 
 namespace {
 
-Result<NameList> readNames(std::span<const std::byte> file, const SectionIndex& index) {
-    const layout::Section* section = index.find("NAME");
-    if (section == nullptr) return fail(ErrorCode::BadStructure, "section NAME is missing");
-    PFVOX_TRY(const auto, raw, readSection(file, *section, section->rawBytes));
-    if (section->count >= raw.size() / sizeof(std::uint32_t)) {
-        return failInSection(*section, ErrorCode::BadStructure, "more names than bytes");
-    }
-    const std::size_t textStart = (section->count + 1) * sizeof(std::uint32_t);
-    const auto offsetAt = [&](std::size_t i) {
-        std::uint32_t value = 0;
-        std::memcpy(&value, raw.data() + i * sizeof value, sizeof value);
-        return value;
-    };
-    std::vector<std::string> names;
-    names.reserve(section->count);
-    for (std::size_t i = 0; i < section->count; ++i) {
-        const std::uint32_t begin = offsetAt(i);
-        const std::uint32_t end = offsetAt(i + 1);
-        if (begin > end || end > raw.size() - textStart) {
-            return failInSection(*section, ErrorCode::BadStructure, fmt::format("name {} lies outside", i));
-        }
-        names.emplace_back(reinterpret_cast<const char*>(raw.data()) + textStart + begin, end - begin);
-    }
-    return NameList(std::move(names));
+using container::MemoryBudget;
+
+template <class T>
+Result<void> assign(T& target, Result<T> result) {
+    if (!result) return tl::make_unexpected(std::move(result).error());
+    target = *std::move(result);
+    return {};
 }
 
-template <class... Float>
-bool allFinite(Float... values) {
-    return (std::isfinite(values) && ...);
+Material toMaterial(const layout::Material& r, const NamePool& names) {
+    const auto fraction = [](std::uint16_t v) { return static_cast<float>(v) / 65535.0f; };
+    return {.baseColor = {r.baseColor[0], r.baseColor[1], r.baseColor[2], r.baseColor[3]},
+            .type = static_cast<MaterialType>(r.type),
+            .metalness = fraction(r.metalness),
+            .roughness = fraction(r.roughness),
+            .specular = fraction(r.specular),
+            .indexOfRefraction = r.indexOfRefraction,
+            .emissionStrength = r.emissionStrength,
+            .transparency = fraction(r.transparency),
+            .density = r.density,
+            .phase = std::max(static_cast<float>(r.phase) / 32767.0f, -1.0f),
+            .name = names.at(r.name)};
 }
 
-Result<void> readMaterials(std::span<const std::byte> file, const SectionIndex& index, const Limits& limits,
-                           const NameList& names, AssetInfo& info) {
-    PFVOX_TRY(const auto, records, readRecords<layout::Material>(file, index, "MATL", limits.maxMaterials));
-    for (const layout::Material& r : records) {
-        if (r.type > static_cast<std::uint8_t>(MaterialType::Media) ||
-            !allFinite(r.indexOfRefraction, r.emissionStrength, r.density)) {
-            return failInSection(*index.find("MATL"), ErrorCode::BadValue,
-                                 fmt::format("material {} has an unknown type or a value that is no number",
-                                             info.materials.size()));
+Instance toInstance(const layout::Instance& r, const NamePool& names) {
+    Instance instance{.model = r.model,
+                      .name = names.at(r.name),
+                      .layer = r.layer,
+                      .hidden = (r.flags & layout::kInstanceHidden) != 0};
+    for (int row = 0; row < 3; ++row) {
+        for (int column = 0; column < 4; ++column) {
+            instance.worldFromModel[column][row] =
+                static_cast<double>(r.worldFromModel[static_cast<std::size_t>(4 * row + column)]);
         }
-        const auto unit = [](std::uint16_t v) { return static_cast<float>(v) / 65535.0f; };
-        info.materials.push_back(
-            {.baseColor = {r.baseColor[0], r.baseColor[1], r.baseColor[2], r.baseColor[3]},
-             .type = static_cast<MaterialType>(r.type),
-             .metalness = unit(r.metalness),
-             .roughness = unit(r.roughness),
-             .specular = unit(r.specular),
-             .indexOfRefraction = r.indexOfRefraction,
-             .emissionStrength = r.emissionStrength,
-             .transparency = unit(r.transparency),
-             .density = r.density,
-             .phase = std::max(static_cast<float>(r.phase) / 32767.0f, -1.0f),
-             .name = names.at(r.name)});
+    }
+    return instance;
+}
+
+Result<void> makeCameras(const InfoRecords& records, MemoryBudget& budget, std::vector<Camera>& cameras) {
+    PFVOX_CHECK(budget.reserve(cameras, records.cameras.size()));
+    for (const layout::Camera& r : records.cameras) {
+        const Name name = records.names.at(r.name);
+        PFVOX_CHECK(budget.take(name.size()));
+        cameras.push_back({.name = name.str(),
+                           .position = {r.position[0], r.position[1], r.position[2]},
+                           .target = {r.target[0], r.target[1], r.target[2]},
+                           .fovYDegrees = static_cast<double>(r.fovYDegrees)});
     }
     return {};
 }
 
-Result<void> readInstances(std::span<const std::byte> file, const SectionIndex& index, const Limits& limits,
-                           const NameList& names, AssetInfo& info) {
-    PFVOX_TRY(const auto, records, readRecords<layout::Instance>(file, index, "INST", limits.maxInstances));
-    for (const layout::Instance& r : records) {
-        Instance instance{.model = r.model,
-                          .name = names.at(r.name),
-                          .layer = r.layer,
-                          .hidden = (r.flags & layout::kInstanceHidden) != 0};
-        for (int row = 0; row < 3; ++row) {
-            for (int column = 0; column < 4; ++column) {
-                const float value = r.worldFromModel[static_cast<std::size_t>(4 * row + column)];
-                if (!std::isfinite(value)) {
-                    return failInSection(
-                        *index.find("INST"), ErrorCode::BadValue,
-                        fmt::format("the transform of instance {} is no number", info.instances.size()));
-                }
-                instance.worldFromModel[column][row] = static_cast<double>(value);
-            }
-        }
-        info.instances.push_back(std::move(instance));
-    }
-    return {};
-}
-
-Result<void> readLayersAndCameras(std::span<const std::byte> file, const SectionIndex& index,
-                                  const NameList& names, AssetInfo& info) {
-    constexpr std::uint64_t kMaxRecords = 1u << 20;
-    if (index.find("LAYR") != nullptr) {
-        PFVOX_TRY(const auto, layers, readRecords<layout::Layer>(file, index, "LAYR", kMaxRecords));
-        for (const layout::Layer& r : layers) {
-            info.layers.push_back(
-                {.name = names.at(r.name), .hidden = (r.flags & layout::kLayerHidden) != 0});
-        }
-    }
-    if (index.find("CAMR") != nullptr) {
-        PFVOX_TRY(const auto, cameras, readRecords<layout::Camera>(file, index, "CAMR", kMaxRecords));
-        for (const layout::Camera& r : cameras) {
-            info.cameras.push_back({.name = names.at(r.name),
-                                    .position = {r.position[0], r.position[1], r.position[2]},
-                                    .target = {r.target[0], r.target[1], r.target[2]},
-                                    .fovYDegrees = static_cast<double>(r.fovYDegrees)});
-        }
-    }
-    return {};
-}
-
-Result<void> readMeta(std::span<const std::byte> file, const SectionIndex& index, const NameList& names,
-                      AssetInfo& info) {
-    const layout::Section* section = index.find("META");
-    if (section == nullptr) return fail(ErrorCode::BadStructure, "section META is missing");
-    PFVOX_TRY(const auto, raw, readSection(file, *section, section->rawBytes));
-    layout::Meta meta;
-    if (raw.size() < sizeof meta) return failInSection(*section, ErrorCode::Truncated, "too short");
+/// META has its notes behind it.
+Result<void> readMeta(const PfVoxSections& sections, InfoRecords& records) {
+    PFVOX_TRY(const layout::Section*, section, sections.table.require("META"));
+    PFVOX_TRY(const auto, raw, sections.reader.read<std::byte>(*section, section->rawBytes));
+    layout::Meta& meta = records.meta;
+    if (raw.size() < sizeof meta)
+        return container::failInSection(*section, ErrorCode::Truncated, "too short");
     std::memcpy(&meta, raw.data(), sizeof meta);
     if (raw.size() != sizeof meta + std::size_t{meta.noteCount} * sizeof(std::uint32_t)) {
-        return failInSection(*section, ErrorCode::BadStructure, "the number of notes does not fit the size");
+        return container::failInSection(*section, ErrorCode::BadStructure,
+                                        "the number of notes does not fit the size");
     }
-    if (!std::isfinite(meta.voxelSizeMetres) || meta.voxelSizeMetres <= 0.0) {
-        return failInSection(*section, ErrorCode::BadValue, "the voxel size is not positive");
-    }
-    info.source.voxelSizeMetres = meta.voxelSizeMetres;
-    info.source.format = names.at(meta.format);
-    for (std::size_t i = 0; i < meta.noteCount; ++i) {
-        std::uint32_t name = 0;
-        std::memcpy(&name, raw.data() + sizeof meta + i * sizeof name, sizeof name);
-        info.source.notes.push_back(names.at(name));
-    }
+    auto notes = container::Array<std::uint32_t>::make(sections.reader.budget(), meta.noteCount);
+    if (!notes) return container::inSection(*section, tl::make_unexpected(notes.error()));
+    records.notes = *std::move(notes);
+    if (!records.notes.empty())
+        std::memcpy(records.notes.data(), raw.data() + sizeof meta, raw.size() - sizeof meta);
     return {};
 }
 
 }  // namespace
 
-Result<void> readInfo(std::span<const std::byte> file, const SectionIndex& index, const Limits& limits,
-                      NameList& names, AssetInfo& info) {
-    PFVOX_TRY(NameList, list, readNames(file, index));
-    names = std::move(list);
-    PFVOX_CHECK(readMaterials(file, index, limits, names, info));
-    PFVOX_CHECK(readInstances(file, index, limits, names, info));
-    PFVOX_CHECK(readLayersAndCameras(file, index, names, info));
-    return readMeta(file, index, names, info);
+Result<InfoRecords> readInfo(const PfVoxSections& sections, const Limits& limits) {
+    InfoRecords records;
+    PFVOX_TRY(const layout::Section*, names, sections.table.require("NAME"));
+    PFVOX_CHECK(assign(records.names, NamePool::read(sections.reader, *names)));
+    PFVOX_CHECK(assign(records.materials, sections.readTable<layout::Material>("MATL", limits.maxMaterials)));
+    PFVOX_CHECK(assign(records.instances, sections.readTable<layout::Instance>("INST", limits.maxInstances)));
+    if (sections.table.find("LAYR") != nullptr)
+        PFVOX_CHECK(assign(records.layers, sections.readTable<layout::Layer>("LAYR", layout::kMaxLayers)));
+    if (sections.table.find("CAMR") != nullptr)
+        PFVOX_CHECK(assign(records.cameras, sections.readTable<layout::Camera>("CAMR", layout::kMaxLayers)));
+    PFVOX_CHECK(readMeta(sections, records));
+    return records;
+}
+
+Result<void> makeInfo(const InfoRecords& records, MemoryBudget& budget, AssetInfo& info) {
+    const NamePool& names = records.names;
+    PFVOX_CHECK(budget.reserve(info.materials, records.materials.size()));
+    for (const layout::Material& r : records.materials) info.materials.push_back(toMaterial(r, names));
+    PFVOX_CHECK(budget.reserve(info.instances, records.instances.size()));
+    for (const layout::Instance& r : records.instances) info.instances.push_back(toInstance(r, names));
+    PFVOX_CHECK(budget.reserve(info.layers, records.layers.size()));
+    for (const layout::Layer& r : records.layers)
+        info.layers.push_back({.name = names.at(r.name), .hidden = (r.flags & layout::kLayerHidden) != 0});
+    PFVOX_CHECK(makeCameras(records, budget, info.cameras));
+    info.source.voxelSizeMetres = records.meta.voxelSizeMetres;
+    info.source.format = names.at(records.meta.format);
+    PFVOX_CHECK(budget.reserve(info.source.notes, records.notes.size()));
+    for (const std::uint32_t note : records.notes) info.source.notes.push_back(names.at(note));
+    return {};
 }
 
 }  // namespace pfvox

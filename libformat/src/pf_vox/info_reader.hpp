@@ -1,52 +1,37 @@
-// InfoReader: the sections beside the octrees (MATL, INST, LAYR, CAMR, META, NAME), and tables of records in
-// general.
+// InfoReader: the sections beside the octrees: MATL, INST, LAYR, CAMR, META and NAME.
 #pragma once
 
-#include <fmt/format.h>
-#include <cstring>
 #include <pfvox/asset.hpp>
-#include <string>
-#include <vector>
 
+#include "pf_vox/names.hpp"
+#include "pf_vox/record_rules.hpp"
 #include "pf_vox/section_index.hpp"
-#include "pf_vox/section_reader.hpp"
 
 namespace pfvox {
 
-/// The NAME section. Indices that do not exist give the empty string: a name decides nothing.
-class NameList {
-  public:
-    NameList() = default;
-    explicit NameList(std::vector<std::string> names) : names_(std::move(names)) {}
-    std::string at(std::uint32_t index) const {
-        return index < names_.size() ? names_[index] : std::string{};
-    }
+/// The tables as they are stored; not checked.
+struct InfoRecords {
+    NamePool names;
+    container::Array<layout::Material> materials;
+    container::Array<layout::Instance> instances;
+    container::Array<layout::Layer> layers;
+    container::Array<layout::Camera> cameras;
+    layout::Meta meta{};
+    container::Array<std::uint32_t> notes;
 
-  private:
-    std::vector<std::string> names_;
+    InfoTables tables() const {
+        return {.materials = materials,
+                .instances = instances,
+                .layerCount = layers.size(),
+                .cameras = cameras,
+                .meta = meta};
+    }
 };
 
-/// Reads a table of fixed-size records. Errors: BadStructure (missing, wrong size), LimitExceeded, those of
-/// readSection.
-template <class Record>
-Result<std::vector<Record>> readRecords(std::span<const std::byte> file, const SectionIndex& index,
-                                        std::string_view fourcc, std::uint64_t maxCount) {
-    const layout::Section* section = index.find(fourcc);
-    if (section == nullptr)
-        return fail(ErrorCode::BadStructure, fmt::format("section {} is missing", fourcc));
-    if (section->count > maxCount) {
-        return failInSection(*section, ErrorCode::LimitExceeded,
-                             fmt::format("{} records, at most {} are accepted", section->count, maxCount));
-    }
-    PFVOX_TRY(const auto, raw, readSection(file, *section, section->count * sizeof(Record)));
-    std::vector<Record> records(section->count);
-    if (!raw.empty()) std::memcpy(records.data(), raw.data(), raw.size());
-    return records;
-}
+/// Errors: those of PfVoxSections::readTable, BadStructure.
+Result<InfoRecords> readInfo(const PfVoxSections& sections, const Limits& limits);
 
-/// Fills everything of `info`; `names` is needed for the models too. Errors: those of readRecords, BadValue,
-/// BadReference.
-Result<void> readInfo(std::span<const std::byte> file, const SectionIndex& index, const Limits& limits,
-                      NameList& names, AssetInfo& info);
+/// Precondition: the records were checked. Errors: LimitExceeded.
+Result<void> makeInfo(const InfoRecords& records, container::MemoryBudget& budget, AssetInfo& info);
 
 }  // namespace pfvox

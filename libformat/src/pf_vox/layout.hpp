@@ -1,55 +1,14 @@
-// Layout of a PF_VOX 1.0 file, byte for byte. docs/format-pf_vox.md says the same in words; change both or
-// none.
+// Layout of the records of a PF_VOX 1.0 file, byte for byte; header and section table are those of
+// container/layout.hpp. docs/format-pf_vox.md says the same in words; change both or none.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <type_traits>
+
+#include "container/layout.hpp"
 
 namespace pfvox::layout {
-
-/// "PFVOX", then line ends and a control character that a text-mode transfer would change.
-inline constexpr std::array<std::uint8_t, 8> kMagic{'P', 'F', 'V', 'O', 'X', '\r', '\n', 0x1a};
-inline constexpr std::uint32_t kEndianTag = 0x01020304u;
-inline constexpr std::uint64_t kAlignment = 64;
-inline constexpr std::uint32_t kNoRegion = 0xffffffffu;
-
-/// Features a reader must know to read the file.
-inline constexpr std::uint32_t kKnownRequiredFeatures = 1u << 0;  // kPfVoxResident
-
-inline constexpr std::uint32_t kSectionMustUnderstand = 1u << 0;
-enum class Codec : std::uint32_t { Raw = 0, Zstd = 1 };
-
-struct Header {
-    std::array<std::uint8_t, 8> magic;
-    std::uint16_t versionMajor;
-    std::uint16_t versionMinor;
-    std::uint32_t endianTag;
-    std::uint32_t requiredFeatures;
-    std::uint32_t optionalFeatures;
-    std::uint32_t tableOffset;
-    std::uint32_t sectionCount;
-    std::uint64_t fileBytes;
-    std::uint64_t headHash;  ///< xxh3-64 of header (with this field 0) and section table
-    std::array<std::uint8_t, 16> contentKey;
-};
-static_assert(sizeof(Header) == 64 && offsetof(Header, fileBytes) == 32 &&
-              offsetof(Header, contentKey) == 48);
-
-struct Section {
-    std::array<char, 4> fourcc;
-    std::uint32_t flags;
-    Codec codec;
-    std::uint32_t region;  ///< kNoRegion for sections of the whole file
-    std::uint64_t offset;
-    std::uint64_t storedBytes;
-    std::uint64_t rawBytes;
-    std::uint64_t count;    ///< records, nodes or values
-    std::uint64_t rawHash;  ///< xxh3-64 of the raw bytes
-    std::uint64_t reserved;
-};
-static_assert(sizeof(Section) == 64 && offsetof(Section, offset) == 16 && offsetof(Section, rawHash) == 48);
 
 /// MATL
 struct Material {
@@ -141,5 +100,8 @@ static_assert(sizeof(Meta) == 16);
 inline constexpr std::uint32_t kMaxRegionDepth = 8;
 inline constexpr std::uint32_t kMaxRegionNodes = ((1u << 24) - 1) / 7;  ///< 8^0 + ... + 8^7
 inline constexpr std::uint32_t kMaxRegionValues = 1u << 24;
+inline constexpr std::uint32_t kMaxPalette = 1u << 16;  ///< what values of 16 bits can name
+inline constexpr std::uint32_t kMaxModelDepth = 30;     ///< so that the edge of the cube is an int32
+inline constexpr std::uint64_t kMaxLayers = 1u << 20;   ///< cameras, too
 
 }  // namespace pfvox::layout

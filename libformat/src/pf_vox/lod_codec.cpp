@@ -51,9 +51,6 @@ std::vector<std::uint8_t> packLod(const OctreeRegion& region, const std::vector<
 
 Result<void> unpackLod(std::span<const std::uint8_t> bytes, const std::vector<Material>& materials,
                        OctreeRegion& region) {
-    if (std::ranges::max(region.palette) >= materials.size()) {
-        return fail(ErrorCode::BadReference, "a material of the palette does not exist");
-    }
     const std::size_t n = region.tree.nodes.size();
     region.lod.materials.resize(n);
     for (std::size_t i = 0; i < n; ++i) {

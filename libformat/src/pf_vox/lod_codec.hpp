@@ -25,9 +25,9 @@ constexpr std::uint64_t residentLodBytes(std::uint64_t nodes) {
 std::vector<std::uint8_t> packLod(const OctreeRegion& region, const std::vector<Material>& materials);
 std::vector<std::uint8_t> residentLod(const OctreeRegion& region);
 
-/// Fills region.lod, whose nodes and palette must be there. Precondition: bytes.size() is what the function
-/// above says. Errors: BadReference where a palette index is outside the palette, or the palette outside the
-/// materials.
+/// Fills region.lod, whose nodes and palette must be there. Preconditions: bytes.size() is what the function
+/// above says; the palette names materials that exist. Errors: BadReference where a palette index is outside
+/// the palette.
 Result<void> unpackLod(std::span<const std::uint8_t> bytes, const std::vector<Material>& materials,
                        OctreeRegion& region);
 Result<void> readResidentLod(std::span<const std::uint8_t> bytes, OctreeRegion& region);

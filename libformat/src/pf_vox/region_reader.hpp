@@ -18,39 +18,46 @@ class RegionReader {
   public:
     /// What a thread reads with, from region to region.
     struct Scratch {
-        octree::GrowBuffer<std::uint8_t> planes;
+        octree::GrowBuffer<std::uint8_t> bytes;  ///< of masks, then of levels of detail
         octree::PlaneLinker linker;
     };
 
-    /// Bytes of a MemoryPool that the region will take: counts that its sections confirm.
+    /// Bytes that the region will take: counts that its sections confirm.
+    struct Sizes {
+        std::uint64_t pooled = 0;   ///< of a MemoryPool
+        std::uint64_t beside = 0;   ///< palette and level of detail
+        std::uint64_t scratch = 0;  ///< while it is read
+    };
     /// Errors: BadStructure, UnsupportedFeature (codec).
-    Result<std::size_t> poolBytes(std::size_t id, const layout::Region& record) const;
+    Result<Sizes> sizesOf(std::size_t id, const layout::Region& record) const;
 
-    RegionReader(std::span<const std::byte> file, const SectionIndex& index,
+    RegionReader(const PfVoxSections& sections, std::span<const std::uint16_t> palettes,
                  const std::vector<Material>& materials)
-        : file_(file), index_(index), materials_(materials) {}
+        : sections_(sections), palettes_(palettes), materials_(materials) {}
 
-    /// Takes the memory of the trees from the pool, or from the heap where that is null.
-    /// Errors: BadStructure, BadReference, those of readSection; each with section and offset.
+    /// Takes the memory of the trees from the pool. Precondition: the sizes of the region were taken from the
+    /// budget. Errors: BadStructure, BadReference, those of SectionReader; each with section and offset.
     Result<OctreeRegion> read(std::size_t id, const layout::Region& record,
-                              std::span<const std::uint16_t> palettes,
                               const std::shared_ptr<MemoryPool>& pool, Scratch& scratch) const;
 
   private:
-    bool isPacked() const { return index_.profile() == Profile::Packed; }
+    bool isPacked() const { return sections_.profile == Profile::Packed; }
     RegionPart valuesPart() const { return isPacked() ? RegionPart::Values : RegionPart::ValueBytes; }
-    Result<const layout::Section*> require(RegionPart part, std::size_t id) const;
+    RegionPart lodPart() const { return isPacked() ? RegionPart::Lod : RegionPart::LodWords; }
+    std::uint64_t lodBytes(std::size_t id, const layout::Region& record) const;
     Result<void> checkSize(RegionPart part, std::size_t id, std::uint64_t bytes) const;
+    Result<void> fill(RegionPart part, std::size_t id, std::span<std::byte> raw) const;
     Result<void> readPackedTree(std::size_t id, const layout::Region& record, OctreeRegion& region,
                                 Scratch& scratch) const;
     Result<void> readWords(RegionPart part, std::size_t id, std::size_t count,
                            PooledVector<std::uint32_t>& words) const;
     Result<void> readResidentTree(std::size_t id, const layout::Region& record, OctreeRegion& region) const;
     Result<void> readValues(std::size_t id, const layout::Region& record, OctreeRegion& region) const;
-    Result<void> readLod(std::size_t id, OctreeRegion& region) const;
+    Result<void> readLod(std::size_t id, const layout::Region& record, OctreeRegion& region,
+                         Scratch& scratch) const;
 
-    std::span<const std::byte> file_;
-    const SectionIndex& index_;
+    const PfVoxSections& sections_;
+    std::span<const std::uint16_t> palettes_;
     const std::vector<Material>& materials_;
 };
 

@@ -3,7 +3,6 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <cstring>
 #include <iterator>
 
 #include "octree/node_planes.hpp"
@@ -13,9 +12,12 @@ namespace pfvox {
 
 namespace {
 
+using container::SectionContent;
+using container::Texture;
+
 std::vector<std::uint8_t> bytesOf(std::span<const std::uint32_t> words) {
-    std::vector<std::uint8_t> bytes(words.size_bytes());
-    if (!words.empty()) std::memcpy(bytes.data(), words.data(), bytes.size());
+    std::vector<std::uint8_t> bytes;
+    container::appendBytes(bytes, words);
     return bytes;
 }
 
@@ -70,14 +72,11 @@ SectionContent emptyTopTrees(Profile profile) {
 }
 
 void appendTopTree(const NodeTree& tree, Profile profile, SectionContent& section) {
-    const auto append = [&](const std::vector<std::uint8_t>& bytes) {
-        section.raw.insert(section.raw.end(), bytes.begin(), bytes.end());
-    };
     if (profile == Profile::Packed) {
-        append(octree::splitPlanes(tree, {}));
+        container::appendBytes(section.raw, std::span<const std::uint8_t>(octree::splitPlanes(tree, {})));
     } else {
-        append(bytesOf(tree.nodes));
-        append(bytesOf(tree.farTable));
+        container::appendBytes(section.raw, std::span<const std::uint32_t>(tree.nodes));
+        container::appendBytes(section.raw, std::span<const std::uint32_t>(tree.farTable));
     }
     section.count += tree.nodes.size();
 }

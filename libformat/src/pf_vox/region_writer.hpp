@@ -5,17 +5,17 @@
 #include <pfvox/pf_vox.hpp>
 #include <vector>
 
-#include "pf_vox/section_writer.hpp"
+#include "container/section_writer.hpp"
 
 namespace pfvox {
 
 /// TOPT or TOPN without content, and the same with one more top tree.
-SectionContent emptyTopTrees(Profile profile);
-void appendTopTree(const NodeTree& tree, Profile profile, SectionContent& section);
+container::SectionContent emptyTopTrees(Profile profile);
+void appendTopTree(const NodeTree& tree, Profile profile, container::SectionContent& section);
 
 /// Adds the sections of all regions, which are made in parallel; the place in `regions` is the region id.
 void addRegionSections(const std::vector<const OctreeRegion*>& regions,
                        const std::vector<Material>& materials, Profile profile,
-                       std::vector<SectionContent>& sections);
+                       std::vector<container::SectionContent>& sections);
 
 }  // namespace pfvox

@@ -1,50 +1,53 @@
-// SectionIndex: finds sections by name and region, and refuses tables with doubles or unknown required
-// sections.
+// The sections of a PF_VOX file: which there are, and whether they are those of its profile.
 #pragma once
 
 #include <array>
-#include <pfvox/error.hpp>
 #include <pfvox/pf_vox.hpp>
 #include <string_view>
-#include <vector>
 
-#include "pf_vox/section_reader.hpp"
+#include "container/section_reader.hpp"
+#include "container/section_table.hpp"
 
 namespace pfvox {
 
+inline constexpr std::array<std::string_view, 11> kWholeFileSections{
+    "MATL", "MODL", "REGN", "TOPT", "TOPN", "PALT", "INST", "NAME", "META", "LAYR", "CAMR"};
 /// The sections that belong to one region, in the order of kRegionSections: first those of a packed file,
 /// then those of a resident one.
 enum class RegionPart : std::uint8_t { Masks, Values, Lod, Nodes, Lookup, FarTable, ValueBytes, LodWords };
 inline constexpr std::array<std::string_view, 8> kRegionSections{"MASK", "ATTR", "LODA", "NODE",
                                                                  "LOOK", "FARP", "VALU", "LODR"};
-constexpr Profile profileOf(RegionPart part) {
-    return part < RegionPart::Nodes ? Profile::Packed : Profile::Resident;
-}
 
-class SectionIndex {
-  public:
-    /// Errors: UnsupportedFeature (unknown required section), BadStructure (section twice, for an absurd
-    /// region or of the other profile).
-    static Result<SectionIndex> make(const FileHead& head, Diagnostics& diagnostics);
+/// An open file: its sections and what reads them.
+struct PfVoxSections {
+    container::SectionReader reader;
+    container::SectionTable table;
+    Profile profile = Profile::Packed;
 
-    Profile profile() const { return profile_; }
-
-    /// The section of the whole file with this name, or null.
-    const layout::Section* find(std::string_view fourcc) const;
-    /// A section of a region, or null.
     const layout::Section* find(RegionPart part, std::size_t region) const {
-        const auto& list = ofRegions_[static_cast<std::size_t>(part)];
-        return region < list.size() ? list[region] : nullptr;
+        return table.find(static_cast<std::size_t>(part), region);
     }
-    /// How many regions have sections: an upper limit of how many there can be.
-    std::size_t regionCount() const;
-
-  private:
-    Result<void> addToRegion(RegionPart part, const layout::Section& section, std::size_t sectionCount);
-
-    Profile profile_ = Profile::Packed;
-    std::vector<const layout::Section*> whole_;
-    std::array<std::vector<const layout::Section*>, kRegionSections.size()> ofRegions_;  ///< by part, region
+    Result<const layout::Section*> require(RegionPart part, std::size_t region) const {
+        return table.require(static_cast<std::size_t>(part), region);
+    }
+    /// A table of records. Errors: BadStructure (missing, wrong size), LimitExceeded, those of SectionReader.
+    template <class Record>
+    Result<container::Array<Record>> readTable(std::string_view name, std::uint64_t maxCount) const;
 };
+
+/// Errors: those of SectionTable::make; BadStructure for sections of the other profile.
+Result<PfVoxSections> indexSections(const container::FileHead& head, container::SectionReader reader,
+                                    Diagnostics& diagnostics);
+
+/// Errors: LimitExceeded.
+Result<void> checkCount(const layout::Section& section, std::uint64_t maxCount);
+
+template <class Record>
+Result<container::Array<Record>> PfVoxSections::readTable(std::string_view name,
+                                                          std::uint64_t maxCount) const {
+    PFVOX_TRY(const layout::Section*, section, table.require(name));
+    PFVOX_CHECK(checkCount(*section, maxCount));
+    return reader.read<Record>(*section, section->count);
+}
 
 }  // namespace pfvox

@@ -122,7 +122,7 @@ void placeModel(const SourceBytes& source, const svx::Manifest& manifest, const 
     const double fileSize = manifest.voxelSizeMetres.value_or(kDefaultVoxelSizeMetres);
     asset.source.format = "svx";
     asset.source.voxelSizeMetres = settings.voxelSizeMetres.value_or(fileSize);
-    asset.source.notes = manifest.metadata;
+    asset.source.notes.assign(manifest.metadata.begin(), manifest.metadata.end());
     if (!settings.voxelSizeMetres && manifest.voxelSizeMetres && fileSize > kLargestUsualVoxelMetres) {
         diagnostics.note(
             "svx-voxel-size",

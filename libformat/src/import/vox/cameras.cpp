@@ -41,10 +41,15 @@ Result<std::optional<Camera>> readCamera(Chunk& chunk, double voxelSizeMetres) {
         return std::optional<Camera>{};
 
     const glm::dvec3 direction = viewDirection(angles.x, angles.y);
+    const glm::dvec3 eye = focus - radius * direction;
+    // Far from the origin a small radius is lost in float32, as which a file keeps both ends.
+    const double leastRadius = 1e-6 * glm::length(focus);
+    const bool seesFocus = radius > leastRadius;
     Camera camera;
     camera.name = fmt::format("camera {}", id);
-    camera.position = voxelSizeMetres * yUpFromVox(focus - radius * direction);
-    camera.target = voxelSizeMetres * yUpFromVox(radius > 0.0 ? focus : focus + direction);
+    camera.position = voxelSizeMetres * yUpFromVox(eye);
+    camera.target =
+        voxelSizeMetres * yUpFromVox(seesFocus ? focus : eye + std::max(1.0, leastRadius) * direction);
     camera.fovYDegrees = std::clamp(number("_fov", 45.0), 1.0, 179.0);
     return std::optional{camera};
 }

@@ -14,6 +14,9 @@ namespace {
 constexpr std::int32_t kMaxSize = 2048;
 constexpr std::int32_t kMaxAddressableSize = 256;
 
+/// Cameras beyond are of no use, and float32 hardly holds them.
+constexpr double kMaxMetres = 1e30;
+
 /// Chunks of renderer and editor state that pfvox has no use for.
 constexpr std::array<std::string_view, 6> kSkippedIds{"rOBJ", "rLIT", "rAIR", "rLEN", "POST", "rDIS"};
 
@@ -148,7 +151,12 @@ class VoxFileReader {
 
     Result<void> readView(Chunk& chunk) {
         PFVOX_TRY(std::optional<Camera>, camera, readCamera(chunk, voxelSizeMetres_));
-        if (camera) file_.cameras.push_back(std::move(*camera));
+        if (!camera) return {};
+        if (glm::length(camera->position) + glm::length(camera->target) < kMaxMetres) {
+            file_.cameras.push_back(std::move(*camera));
+        } else {
+            warnAt(chunk, "vox-camera-far", camera->name + " stands too far away to be kept");
+        }
         return {};
     }
 

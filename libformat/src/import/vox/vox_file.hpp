@@ -33,13 +33,13 @@ struct VoxFile {
     Palette palette = defaultPalette();
     std::array<MaterialRecord, kPaletteSize> materials;  ///< by voxel index; base colors not filled in
     std::vector<Camera> cameras;
-    std::vector<std::string> notes;
+    std::vector<Name> notes;
 };
 
 /// Reads all chunks. Views in the result point into `bytes`.
 /// Errors: Truncated, BadMagic, BadValue, BadStructure, UnsupportedFeature (Teardown's TDCZ), LimitExceeded
 /// (maxModels). Diagnostics: vox-version, vox-trailing-bytes, vox-imap-invalid, vox-duplicate-chunk,
-/// vox-unknown-chunks, vox-pack-count, vox-size-too-large, vox-container-size.
+/// vox-unknown-chunks, vox-pack-count, vox-size-too-large, vox-container-size, vox-camera-far.
 Result<VoxFile> readVoxFile(std::span<const std::byte> bytes, double voxelSizeMetres, const Limits& limits,
                             Diagnostics& diagnostics);
 
