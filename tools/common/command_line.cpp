@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <pfvox/files.hpp>
 
 #include "common/text.hpp"
 #include "common/unknown_option.hpp"
@@ -90,6 +91,25 @@ std::function<std::string(const std::string&)> numberFrom(double low, double hig
         if (CLI::detail::lexical_cast(text, value) && value >= low && value <= high) return {};
         return fmt::format("{} is not a number from {} to {}", text, low, high);
     };
+}
+
+std::function<std::string(const std::string&)> outputPath() {
+    return [](const std::string& text) -> std::string {
+        if (text == "-") return "nothing is written to standard output: name a file or folder, or ./- itself";
+        const auto path = io::pathFromText(text);
+        return path ? std::string() : path.error().message;
+    };
+}
+
+void addInputs(CLI::App& command, InputWords& inputs, const std::vector<std::string>& suffixes) {
+    command.add_option("input", inputs.words)
+        ->required()
+        ->check(suggestFiles(suffixes))
+        ->group(group::kInputOutput);
+    command
+        .add_flag("-0,--null", inputs.nullSeparated,
+                  "entries of lists end in NUL, as `find -print0` writes them")
+        ->group(group::kInputOutput);
 }
 
 CLI::Option* addSwitch(CLI::App& command, const std::string& name, bool& value, const std::string& meaning) {

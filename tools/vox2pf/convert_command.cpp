@@ -6,6 +6,7 @@
 
 #include "common/inputs.hpp"
 #include "common/output_paths.hpp"
+#include "common/paths.hpp"
 #include "vox2pf/commands.hpp"
 #include "vox2pf/convert_run.hpp"
 
@@ -29,13 +30,11 @@ HelpText helpText() {
 void addInputOutputOptions(CLI::App& command, ConvertOptions& options) {
     std::vector<std::string> suffixes{".toml"};
     for (const SourceFormat& format : sourceFormats()) suffixes.emplace_back(format.extension);
-    command.add_option("input", options.inputs)
-        ->required()
-        ->check(suggestFiles(suffixes))
-        ->group(group::kInputOutput);
+    addInputs(command, options.inputs, suffixes);
     command.add_option("-o,--output", options.output, "file (.pf_vox) for one input, else folder; required")
         ->option_text("PATH")
         ->required()
+        ->check(outputPath())
         ->check(suggestFiles({kPfVoxExtension}))
         ->group(group::kInputOutput);
     command
@@ -138,6 +137,7 @@ void addBuildOptions(CLI::App& command, ConvertOptions& options) {
     command
         .add_option("--depfile", options.depfile, "write what each output was made from, for make and ninja")
         ->option_text("FILE")
+        ->check(outputPath())
         ->check(suggestFiles({".d"}))
         ->group(group::kBuild);
     command
@@ -164,14 +164,9 @@ InputQuery inputQuery(const ConvertOptions& options) {
 /// --base-dir: files that were named one by one keep their place below that folder. Gives what is wrong, if
 /// anything.
 std::string placeBelow(const std::filesystem::path& baseDir, std::vector<InputFile>& inputs) {
-    // Links are not followed: an asset that is a link has the place of the link.
-    const auto named = [](const std::filesystem::path& path) {
-        const auto name = std::filesystem::absolute(path).lexically_normal();
-        return name.has_filename() ? name : name.parent_path();
-    };
     for (InputFile& input : inputs) {
         if (input.fromFolder) continue;
-        const auto relative = named(input.file).lexically_relative(named(baseDir));
+        const auto relative = placeOf(input.file).lexically_relative(placeOf(baseDir));
         if (relative.empty() || relative == "." || *relative.begin() == "..")
             return input.file.string() + " is not below --base-dir " + baseDir.string();
         input.relative = relative;
@@ -182,7 +177,7 @@ std::string placeBelow(const std::filesystem::path& baseDir, std::vector<InputFi
 /// Scenes are carried over under their own name. In folders the name tells them from settings files; what is
 /// named on the command line is a scene by its extension.
 bool isScene(const InputFile& input) {
-    return input.fromFolder ? isSceneName(input.file) : input.file.extension() == ".toml";
+    return input.fromFolder ? isSceneName(input.file) : hasExtension(input.file, ".toml");
 }
 
 std::vector<AssetTask> makeTasks(const std::vector<InputOutput>& pairs, const SettingsFile& settings,
@@ -198,6 +193,16 @@ std::vector<AssetTask> makeTasks(const std::vector<InputOutput>& pairs, const Se
                          .fault = pair.input.fault});
     }
     return tasks;
+}
+
+/// A pattern that nothing fits, and something would in other letters, is a mistake.
+void warnAboutPatterns(const SettingsFile& settings, const std::vector<InputOutput>& pairs,
+                       const std::string& settingsFile, Reporter& reporter) {
+    std::vector<std::filesystem::path> inputs;
+    for (const InputOutput& pair : pairs) inputs.push_back(pair.input.relative);
+    DiagnosticList diagnostics;
+    settings.reportNearMisses(inputs, diagnostics);
+    reporter.diagnostics(settingsFile, diagnostics.entries());
 }
 
 ExitCode runConvert(const CLI::App& command, const ConvertOptions& options) {
@@ -226,6 +231,7 @@ ExitCode runConvert(const CLI::App& command, const ConvertOptions& options) {
     if (!pairs) return usageError(command, pairs.error());
     if (pairs->empty())
         return stopWith(fail(ErrorCode::NothingToConvert, "no input but outputs of this tool").value());
+    warnAboutPatterns(*settings, *pairs, options.settingsFile, reporter);
     return ConvertRun(options, *limits, reporter).run(makeTasks(*pairs, *settings, options));
 }
 

@@ -4,6 +4,7 @@
 #include <toml++/toml.h>
 #include <pfvox/files.hpp>
 
+#include <algorithm>
 #include <array>
 
 #include "common/text.hpp"
@@ -53,6 +54,26 @@ ConvertSettings SettingsFile::settingsFor(const std::filesystem::path& relative,
     }
     commandLine.applyTo(settings);
     return settings;
+}
+
+void SettingsFile::reportNearMisses(const std::vector<std::filesystem::path>& relative,
+                                    Diagnostics& diagnostics) const {
+    for (const Override& entry : overrides_) {
+        const auto fits = [&](const std::filesystem::path& path) {
+            return globMatches(entry.files, path.generic_string());
+        };
+        const auto nearlyFits = [&](const std::filesystem::path& path) {
+            return globMatches(lowerCase(entry.files), lowerCase(path.generic_string()));
+        };
+        if (std::ranges::any_of(relative, fits)) continue;
+        const auto meant = std::ranges::find_if(relative, nearlyFits);
+        if (meant == relative.end()) continue;
+        diagnostics.warn(
+            "override-case",
+            fmt::format("the pattern \"{}\" of an [[override]] fits no input, but would fit {} in "
+                        "other case: upper and lower case are different letters in paths",
+                        entry.files, meant->generic_string()));
+    }
 }
 
 /// Turns a TOML document into a SettingsFile; every complaint has its line and column.
@@ -105,15 +126,11 @@ class SettingsReader {
         SettingsFile::Override entry;
         for (const auto& [key, node] : table) {
             if (key == "files") {
-                entry.files = node.value_or(std::string());
+                PFVOX_TRY(std::string, pattern, patternOf(node));
+                entry.files = std::move(pattern);
             } else {
                 PFVOX_CHECK(readSection(key, node, entry.patch, {"files"}));
             }
-        }
-        if (entry.files.size() > kMaxPatternBytes) {
-            return failAtRegion(
-                ErrorCode::BadValue, table.source(),
-                fmt::format("a pattern of {} bytes is longer than any path", entry.files.size()));
         }
         if (entry.files.empty()) {
             return failAtRegion(ErrorCode::BadValue, table.source(),
@@ -121,6 +138,22 @@ class SettingsReader {
         }
         settings.overrides_.push_back(std::move(entry));
         return {};
+    }
+
+    /// With '/' between folders, however they were written.
+    Result<std::string> patternOf(const toml::node& node) const {
+        std::string pattern = node.value_or(std::string());
+        if (pattern.empty())
+            return failAtRegion(ErrorCode::BadValue, node.source(),
+                                "files is a pattern, such as \"props/**\"");
+        if (pattern.size() > kMaxPatternBytes) {
+            return failAtRegion(ErrorCode::BadValue, node.source(),
+                                fmt::format("a pattern of {} bytes is longer than any path", pattern.size()));
+        }
+        if (const auto path = io::pathFromText(pattern); !path)
+            return failAtRegion(ErrorCode::BadValue, node.source(), path.error().message);
+        std::ranges::replace(pattern, '\\', '/');
+        return pattern;
     }
 
     /// One of [import], [build], [encode]. `others`: further names that could have been meant.

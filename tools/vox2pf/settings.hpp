@@ -63,6 +63,9 @@ class SettingsFile {
     ConvertSettings settingsFor(const std::filesystem::path& relative,
                                 const SettingsPatch& commandLine) const;
 
+    /// Patterns that fit none of these paths, though they would in other case (override-case).
+    void reportNearMisses(const std::vector<std::filesystem::path>& relative, Diagnostics& diagnostics) const;
+
   private:
     struct Override {
         std::string files;
