@@ -94,6 +94,21 @@ TEST_F(Vox2pf, aPipeIsAnInput) {
     EXPECT_THAT(empty.err, HasSubstr("nothing comes out of this pipe"));
 }
 
+TEST_F(Vox2pf, namesThatLookLikeSomethingElseAreFilesAllTheSame) {
+    addSource("[a,b]");
+    addSource("-dash.vox");
+    addSource("@at.vox");
+    EXPECT_EQ(run({"[a,b]", "-o", "A.PF_VOX"}).exitCode, 0);
+    EXPECT_TRUE(exists("A.PF_VOX"));
+    EXPECT_EQ(run({"-o", "out/", "--", "-dash.vox", "[a,b]"}).exitCode, 0);
+    EXPECT_EQ(run({"./@at.vox", "-o", "out/"}).exitCode, 0);
+    EXPECT_THAT(filesBelow("out"), ElementsAre("-dash.pf_vox", "@at.pf_vox", "[a,b].pf_vox"));
+    EXPECT_THAT(run({"@at.vox", "-o", "out/"}).err, HasSubstr("the file of that name is ./@at.vox"));
+    // An option takes one value, and leaves the input behind it alone.
+    EXPECT_EQ(run({"-o", "b.pf_vox", "--vdb-grid", "[x,y]", "-dash.vox"}).exitCode, 2);
+    EXPECT_EQ(run({"-o", "b.pf_vox", "--vdb-grid", "[x,y]", "./-dash.vox"}).exitCode, 0);
+}
+
 // Of five assets, four of them links, two were converted, without a word.
 TEST_F(Vox2pf, everyLinkOfAFolderIsAnAsset) {
     addSource("store/8f14e45f");

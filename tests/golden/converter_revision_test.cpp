@@ -37,6 +37,7 @@ Source svxBall() {
 Source thesisFile() {
     LegacyWriter writer;
     writer.materials = {{}, {.type = 1, .roughness = 0.3f, .color = glm::vec4(0.2f, 0.4f, 0.6f, 1.0f)}};
+    writer.extent = glm::vec3(1.0f);
     writer.nodes = {{.leafMask = 0b10010110, .validMask = 0b10010110}};
     writer.leafMaterials = {0, 1, 1, 0};
     return {"thesis.pf_vox", writer.bytes()};
@@ -69,7 +70,7 @@ TEST(ConverterRevision, RisesWithTheBytes) {
     expect(tree, "/lod", {.build = {.lod = true}});
     expect(tree, "/hollow", {.hollow = true});
     expect(tree, "/resident", {.profile = Profile::Resident});
-    expect(tree, "/merge", {.import = {.merge = true}});
+    expect(fileBelowTests("../data/courtyard.vox"), "/merge", {.import = {.merge = true}});
     expect(tree, "/zstd-9", {.zstdLevel = 9});
 }
 

@@ -69,6 +69,8 @@ class Collector {
         auto contents = io::readFile(file, kMaxListBytes);
         if (!contents) {
             contents.error().message += ": a list of inputs is a text file";
+            if (isPresent("@" + file.string()))
+                contents.error().message += "; the file of that name is ./@" + file.string();
             return tl::make_unexpected(std::move(contents).error());
         }
         const auto bytes = contents->bytes();

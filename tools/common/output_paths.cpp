@@ -12,7 +12,7 @@ namespace fs = std::filesystem;
 
 bool namesOutputFile(const fs::path& output, const std::string& extension) {
     std::error_code error;
-    return output.extension() == extension && !fs::is_directory(output, error);
+    return hasExtension(output, extension) && !fs::is_directory(output, error);
 }
 
 namespace {

@@ -96,7 +96,8 @@ Json bakeJson(const BakeOutcome& outcome) {
     json["device"] = known(!outcome.device.empty(), outcome.device);
     json["probes"] = known(outcome.status != BakeStatus::Failed, report.probes);
     json["reused"] = known(isBaked, report.reused);
-    for (const auto& [name, count] : countsJson(report.counts).items()) json[name] = known(isThere, count);
+    const Json counts = countsJson(report.counts);
+    for (const auto& [name, count] : counts.items()) json[name] = known(isThere, count);
     json["geometry"] = known(isBaked, passJson(report.geometry));
     json["light"] = known(isBaked, passJson(report.light));
     json["smallLayersMs"] = known(isBaked, report.smallLayersMs);

@@ -250,6 +250,7 @@ Command makeVerifyCommand(CLI::App& tool) {
         ->check(showDefault("all"))
         ->expected(1)
         ->take_all()
+        ->allow_extra_args(false)
         ->group(kVerifying);
     command.add_option("--size", options->size, "of the pictures")
         ->option_text("WxH")

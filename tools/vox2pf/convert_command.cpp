@@ -118,6 +118,9 @@ void addConversionOptions(CLI::App& command, ConvertOptions& options) {
         .add_option("--vdb-grid", patch.vdbGrids,
                     "OpenVDB: import this grid and no others but those named so; may be given again")
         ->option_text("NAME")
+        ->expected(1)
+        ->take_all()
+        ->allow_extra_args(false)
         ->group(group::kConversion);
     command
         .add_option("--vdb-threshold", patch.vdbThreshold, "OpenVDB fog: a voxel is solid above this value")

@@ -60,7 +60,7 @@ bool looksLikeOtherFile(const ExportOptions& options) {
 /// names. What is wrong, when name and format contradict each other.
 tl::expected<Target, std::string> targetOf(const ExportOptions& options) {
     Target target{.output = options.output, .format = options.format};
-    const std::string extension = target.output.extension().string();
+    const std::string extension = lowerCase(target.output.extension().string());
     target.isFile = extension == ".vox" || extension == ".vdb";
     if (!target.isFile && looksLikeOtherFile(options)) {
         return tl::make_unexpected(fmt::format(
