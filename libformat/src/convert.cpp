@@ -12,9 +12,6 @@ namespace pfvox {
 
 namespace {
 
-/// Changes whenever the bytes of an output can change.
-constexpr std::string_view kConverterVersion = PFVOX_VERSION " revision 3";
-
 /// Seconds since the last call.
 class Stopwatch {
   public:
@@ -28,22 +25,6 @@ class Stopwatch {
   private:
     std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
-
-void count(const OctreeAsset& asset, ConvertReport& report) {
-    report.models = static_cast<std::uint32_t>(asset.models.size());
-    report.instances = static_cast<std::uint32_t>(asset.instances.size());
-    report.materials = static_cast<std::uint32_t>(asset.materials.size());
-    for (const OctreeModel& model : asset.models) {
-        report.voxels += model.voxelCount;
-        report.nodes += model.topTree.nodes.size();
-        for (const OctreeRegion& region : model.regions) {
-            report.nodes += region.tree.nodes.size();
-            for (const std::uint32_t d : region.tree.nodes) {
-                report.leaves += octree::kBitCount[node::leafMask(d)];
-            }
-        }
-    }
-}
 
 Error withFile(Error error, const std::filesystem::path& file) {
     if (error.file.empty()) error.file = file;
@@ -71,9 +52,27 @@ std::string spelled(const std::vector<std::string>& names) {
 
 }  // namespace
 
+ConvertReport countsOf(const OctreeAsset& asset) {
+    ConvertReport report;
+    report.models = static_cast<std::uint32_t>(asset.models.size());
+    report.instances = static_cast<std::uint32_t>(asset.instances.size());
+    report.materials = static_cast<std::uint32_t>(asset.materials.size());
+    for (const OctreeModel& model : asset.models) {
+        report.voxels += model.voxelCount;
+        report.nodes += model.topTree.nodes.size();
+        for (const OctreeRegion& region : model.regions) {
+            report.nodes += region.tree.nodes.size();
+            for (const std::uint32_t d : region.tree.nodes) {
+                report.leaves += octree::kBitCount[node::leafMask(d)];
+            }
+        }
+    }
+    return report;
+}
+
 ContentKey contentKey(std::span<const std::byte> source, const ConvertSettings& settings) {
     io::Xxh3_128 hash;
-    hash.update(kConverterVersion);
+    hash.update(fmt::format("{} revision {}", PFVOX_VERSION, kConverterRevision));
     hash.update(fmt::format("pf_vox {}.{}", kPfVoxVersionMajor, kPfVoxVersionMinor));
     forEachConvertSetting(
         [&](const ConvertSetting& setting, const auto& value) {
@@ -89,19 +88,22 @@ Result<std::vector<std::byte>> convertBytes(std::span<const std::byte> bytes,
                                             const ConvertSettings& settings, const Limits& limits,
                                             Diagnostics& diagnostics, ConvertReport& report) {
     Stopwatch watch;
-    report.sourceBytes = bytes.size();
+    ConvertReport before{.sourceBytes = bytes.size()};  // the build
     const auto built = guarded([&]() -> Result<OctreeAsset> {
         PFVOX_TRY(VoxelAsset, asset, importBytes(bytes, source, settings.import, limits, diagnostics));
         compactMaterials(asset);
-        report.importSeconds = watch.lap();
+        before.importSeconds = watch.lap();
         if (settings.hollow) {
-            report.hollowedVoxels = hollowSolids(asset).hiddenVoxels;
+            before.hollowedVoxels = hollowSolids(asset).hiddenVoxels;
             compactMaterials(asset);  // some were only inside
         }
         return buildOctrees(asset, limits, settings.build);
     });
     if (!built) return tl::make_unexpected(withFile(built.error(), source));
-    count(*built, report);
+    report = countsOf(*built);
+    report.sourceBytes = before.sourceBytes;
+    report.hollowedVoxels = before.hollowedVoxels;
+    report.importSeconds = before.importSeconds;
     report.buildSeconds = watch.lap();
 
     const EncodeSettings encode{.zstdLevel = settings.zstdLevel,

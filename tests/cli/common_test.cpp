@@ -11,7 +11,9 @@
 #include <cstring>
 #include <filesystem>
 #include <new>
+#include <pfvox/text_encoding.hpp>
 #include <regex>
+#include <set>
 #include <stdexcept>
 #include <system_error>
 #include <thread>
@@ -21,8 +23,8 @@
 #include "common/command_line.hpp"
 #include "common/depfile.hpp"
 #include "common/exit_code.hpp"
-#include "common/inputs.hpp"
 #include "common/interrupt.hpp"
+#include "common/paths.hpp"
 #include "common/program.hpp"
 #include "common/table.hpp"
 #include "common/text.hpp"
@@ -68,6 +70,51 @@ TEST(Escaped, leavesWordsAndShowsTheRest) {
         << "C1 codes and turned text";
     EXPECT_EQ(escaped("Fen\xeatre \xc0\xaf \xed\xa0\x80"), "Fen\\xeatre \\xc0\\xaf \\xed\\xa0\\x80")
         << "no UTF-8";
+}
+
+TEST(SafeFileNames, differForNamesThatDiffer) {
+    const std::vector<std::string> names{"房间",
+                                         "厨房",
+                                         "hall, east",
+                                         "hall 1",
+                                         "hall_1",
+                                         "Hall_1",
+                                         "hall 1",
+                                         "..",
+                                         "a/b",
+                                         "",
+                                         "a\nb",
+                                         "a_b",
+                                         std::string(300, 'n'),
+                                         std::string(301, 'n'),
+                                         "b\xff",
+                                         "con:x"};
+    const std::vector<std::string> safe = safeFileNames(names);
+    EXPECT_EQ(safe[0], "房间");
+    EXPECT_EQ(safe[1], "厨房");
+    EXPECT_EQ(safe[2], "hall__east");
+    EXPECT_EQ(safe[4], "hall_1") << "a name that needs no change keeps it";
+    EXPECT_EQ(safe[11], "a_b");
+    std::set<std::string> seen;
+    for (const std::string& name : safe) {
+        EXPECT_TRUE(seen.insert(lowerCase(name)).second) << name;
+        EXPECT_EQ(name.find_first_of("/\\:*?\"<>|. \n"), std::string::npos) << name;
+        EXPECT_LE(name.size(), 210u);
+        EXPECT_TRUE(isUtf8(name)) << name;
+    }
+}
+
+TEST(Places, aLinkIsAPlaceOfItsOwn) {
+    const test::TempFolder folder;
+    test::writeText(folder / "Folder/file.vox", "");
+    std::filesystem::create_symlink("Folder/file.vox", folder / "link.vox");
+    EXPECT_NE(placeOf(folder / "link.vox"), placeOf(folder / "Folder/file.vox"));
+    EXPECT_EQ(canonicalName(folder / "link.vox"), canonicalName(folder / "Folder/file.vox"));
+    EXPECT_EQ(placeOf(folder / "x/.././link.vox"), placeOf(folder / "link.vox"));
+    EXPECT_EQ(placeOf(folder / "Folder/"), placeOf(folder / "Folder"));
+    EXPECT_EQ(nearlyNamed(folder / "folder\\FILE.vox"), folder / "Folder/file.vox");
+    EXPECT_EQ(nearlyNamed(folder / "Folder/file.vox"), std::nullopt);
+    EXPECT_EQ(nearlyNamed(folder / "Folder/fil.vox"), std::nullopt);
 }
 
 // weakly_canonical leaves a relative path of which nothing exists as it is.

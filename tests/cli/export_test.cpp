@@ -1,5 +1,8 @@
 // vox2pf export: back to .vox and .vdb, from the command line.
+#include <nlohmann/json.hpp>
+
 #include "cli/vox2pf_fixture.hpp"
+#include "support/json_schema.hpp"
 
 namespace pfvox::test {
 
@@ -33,6 +36,37 @@ TEST_F(Vox2pfExport, aFolderTakesEitherFormat) {
     ASSERT_EQ(run({"export", "courtyard.pf_vox", "-o", "back"}).exitCode, 0);
     ASSERT_EQ(run({"export", "courtyard.pf_vox", "--format", "vdb", "-o", "back"}).exitCode, 0);
     EXPECT_THAT(filesBelow("back"), ElementsAre("courtyard.vdb", "courtyard.vox"));
+}
+
+// Names that were equal in different folders failed, after the first had been written.
+TEST_F(Vox2pfExport, aFolderKeepsItsTree) {
+    for (const char* name : {"in/a/hall.pf_vox", "in/b/hall.pf_vox", "in/hall.pf_vox"}) {
+        std::filesystem::create_directories((folder / name).parent_path());
+        std::filesystem::copy_file(folder / "courtyard.pf_vox", folder / name);
+    }
+    const ProcessResult result = run({"export", "in", "-o", "back"});
+    EXPECT_EQ(result.exitCode, 0) << result.err;
+    EXPECT_THAT(filesBelow("back"), ElementsAre("a/hall.vox", "b/hall.vox", "hall.vox"));
+}
+
+TEST_F(Vox2pfExport, twoInputsOfOneOutputFailBeforeAnythingIsWritten) {
+    for (const char* name : {"a/hall.pf_vox", "b/hall.pf_vox"}) {
+        std::filesystem::create_directories((folder / name).parent_path());
+        std::filesystem::copy_file(folder / "courtyard.pf_vox", folder / name);
+    }
+    const ProcessResult result =
+        run({"export", "a/hall.pf_vox", "b/hall.pf_vox", "courtyard.pf_vox", "-o", "back", "--json"});
+    EXPECT_EQ(result.exitCode, 1);
+    EXPECT_THAT(result.err, HasSubstr("a/hall.pf_vox would become back/hall.vox, too"));
+    EXPECT_THAT(filesBelow("back"), ElementsAre("courtyard.vox"));
+    const auto lines = linesOf(result.out);
+    ASSERT_EQ(lines.size(), 3u);
+    EXPECT_EQ(nlohmann::json::parse(lines[1])["error"]["code"], "file-not-writable");
+    const auto object = nlohmann::json::parse(lines[2]);
+    const auto schema =
+        nlohmann::json::parse(readText(std::filesystem::path(PFVOX_DOCS_DIR) / "schema/export.schema.json"));
+    EXPECT_THAT(SchemaChecker::check(schema, object), ::testing::IsEmpty());
+    EXPECT_EQ(object["outputBytes"], readText(folder / "back/courtyard.vox").size());
 }
 
 TEST_F(Vox2pfExport, contradictionsAreWrongUsage) {

@@ -1,5 +1,7 @@
 // Up to date means content: what a second run of vox2pf does and says, and what build systems get from it.
 
+#include <nlohmann/json.hpp>
+
 #include "cli/vox2pf_fixture.hpp"
 
 namespace pfvox::test {
@@ -67,6 +69,47 @@ TEST_F(UpToDate, damagedOutputIsConvertedAgain) {
     const ProcessResult result = run({"in", "-o", "out", "--explain"});
     EXPECT_EQ(result.exitCode, 0);
     EXPECT_EQ(readText(folder / "out/a.pf_vox"), good);
+}
+
+// One flipped bit was "up to date", and so no build ever repaired it.
+TEST_F(UpToDate, aFlippedBitIsRepaired) {
+    const std::string good = readText(folder / "out/a.pf_vox");
+    for (const std::size_t at : {good.size() * 3 / 4, good.size() / 2, good.size() - 1, std::size_t{70}}) {
+        std::string bad = good;
+        bad[at] = static_cast<char>(bad[at] ^ 16);
+        writeText(folder / "out/a.pf_vox", bad);
+        if (run({"validate", "out/a.pf_vox"}).exitCode == 0) continue;  // between two parts
+        const ProcessResult result = run({"in", "-o", "out", "-v", "--json"});
+        EXPECT_EQ(result.exitCode, 0);
+        EXPECT_THAT(result.err, AllOf(HasSubstr("output-damaged"), HasSubstr("was damaged"))) << at;
+        EXPECT_TRUE(readText(folder / "out/a.pf_vox") == good) << at;
+    }
+    writeText(folder / "out/a.pf_vox", good.substr(0, good.size() - 1) + static_cast<char>(good.back() ^ 1));
+    EXPECT_THAT(run({"in/a.vox", "-o", "out/a.pf_vox"}).out, HasSubstr("the existing output was damaged"));
+}
+
+TEST_F(UpToDate, jsonHasTheFiguresOfTheOutputAndNullForWhatIsUnknown) {
+    const auto first = [&](std::vector<std::string> options) {
+        options.insert(options.begin(), {"in", "-o", "out", "--json"});
+        return nlohmann::json::parse(linesOf(run(options).out).at(0));
+    };
+    const auto converted = first({"--force"});
+    const auto upToDate = first({});
+    EXPECT_EQ(upToDate["status"], "up-to-date");
+    EXPECT_GT(converted["voxels"], 0);
+    for (const char* key :
+         {"sourceBytes", "outputBytes", "models", "instances", "materials", "voxels", "nodes", "leaves"})
+        EXPECT_EQ(upToDate[key], converted[key]) << key;
+    EXPECT_TRUE(upToDate["hollowedVoxels"].is_null());
+    EXPECT_TRUE(upToDate["seconds"]["import"].is_null());
+    for (const std::vector<std::string>& options :
+         {std::vector<std::string>{"--force", "--dry-run"}, {"--no-clobber", "--voxel-size", "2"}}) {
+        const auto kept = first(options);
+        EXPECT_GT(kept["sourceBytes"], 0);
+        for (const char* key :
+             {"outputBytes", "models", "instances", "materials", "voxels", "nodes", "leaves"})
+            EXPECT_TRUE(kept[key].is_null()) << key;
+    }
 }
 
 TEST_F(UpToDate, forceConvertsWithoutNeed) {

@@ -119,7 +119,7 @@ TEST_F(Vox2pf, twoInputsWithOneOutputAreRefusedByName) {
     addSource("x/hall.vox");
     addSource("y/hall.vox", "statue.vox");
     const ProcessResult result = run({"x/hall.vox", "y/hall.vox", "-o", "out"});
-    EXPECT_EQ(result.exitCode, 2);
+    EXPECT_EQ(result.exitCode, 3);
     EXPECT_THAT(result.err,
                 AllOf(HasSubstr("x/hall.vox"), HasSubstr("y/hall.vox"), HasSubstr("hall.pf_vox")));
     EXPECT_FALSE(exists("out"));

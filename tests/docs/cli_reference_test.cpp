@@ -41,7 +41,7 @@ bool isAbout(const std::string& heading, const ToolCommand& it) {
 /// The options in code marks: `-o, --output PATH`, `--force`.
 std::set<std::string> optionsNamedIn(const std::string& text) {
     static const std::regex kCode("`[^`\n]*`");
-    static const std::regex kOption(R"((^|[\s`,=])(--[a-z][\w-]*|-[a-z](?![\w-])))");
+    static const std::regex kOption(R"((^|[\s`,=])(--[a-z][\w-]*|-[a-z0](?![\w-])))");
     std::set<std::string> names;
     for (std::sregex_iterator code(text.begin(), text.end(), kCode), end; code != end; ++code) {
         const std::string words = code->str();

@@ -28,7 +28,15 @@ TEST_F(DeviceTest, ListsDevicesInOrderOfTheirIndex) {
 
 TEST_F(DeviceTest, OpensByIndexAndByPartOfTheName) {
     const gpu::DeviceInfo wanted = device().info();
-    for (const std::string& selector : {std::to_string(wanted.index), wanted.name.substr(1, 5)}) {
+    std::vector<std::string> selectors{std::to_string(wanted.index), wanted.name.substr(1, 5)};
+    // 256 of "llvmpipe (LLVM 15.0.6, 256 bits)" was taken for an index that there is not.
+    const std::string name = wanted.name;
+    for (std::size_t at = 0; at < name.size(); ++at) {
+        const std::size_t end = std::min(name.find_first_not_of("0123456789", at), name.size());
+        if (end - at >= 3) selectors.push_back(name.substr(at, end - at));
+        at = end;
+    }
+    for (const std::string& selector : selectors) {
         PFVOX_ASSERT_VALUE(const gpu::Device, opened, gpu::Device::open({.selector = selector}));
         EXPECT_FALSE(opened.info().name.empty());
     }

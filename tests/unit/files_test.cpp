@@ -12,11 +12,14 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <cstddef>
 #include <fstream>
+#include <thread>
 
 namespace pfvox::io {
 namespace {
@@ -124,11 +127,44 @@ TEST_F(Files, FailuresNameTheFileAndTheReason) {
     EXPECT_THAT(large.error().message, testing::HasSubstr("maxFileBytes"));
 }
 
-TEST_F(Files, PipesAndDevicesAreRefusedInsteadOfReadForever) {
+TEST_F(Files, PipesWithoutWriterAndDevicesAreRefusedInsteadOfReadForever) {
     const fs::path pipe = folder_ / "pipe";
     ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
     EXPECT_EQ(readFile(pipe, 10).error().code, ErrorCode::FileNotReadable);
+    EXPECT_THAT(readFile(pipe, 10).error().message, testing::HasSubstr("start what writes into it"));
     EXPECT_EQ(readFile("/dev/zero", 10).error().code, ErrorCode::FileNotReadable);
+}
+
+TEST_F(Files, APipeIsReadUntilItsWriterIsDone) {
+    const auto readBack = [](const std::string& text, std::uint64_t most) {
+        std::array<int, 2> ends{};
+        EXPECT_EQ(::pipe2(ends.data(), O_CLOEXEC), 0);
+        const std::jthread writer([&] {
+            std::this_thread::sleep_for(std::chrono::milliseconds(20));  // the reader waits first
+            for (std::size_t at = 0; at < text.size();) {
+                const ssize_t n = ::write(ends[1], text.data() + at, text.size() - at);
+                if (n < 0) break;
+                at += static_cast<std::size_t>(n);
+            }
+            ::close(ends[1]);
+        });
+        auto bytes = readFile("/dev/fd/" + std::to_string(ends[0]), most);
+        ::close(ends[0]);
+        return bytes;
+    };
+    const std::string more(3'000'000, 'x');  // than a pipe and the first buffer hold
+    const auto bytes = readBack(more, more.size());
+    ASSERT_TRUE(bytes) << describe(bytes.error());
+    EXPECT_TRUE(std::ranges::equal(bytes->bytes(), bytesOf(more)));
+    EXPECT_EQ(readBack("0123456789a", 10).error().code, ErrorCode::LimitExceeded);
+}
+
+TEST(PathFromText, refusesWhatTheSystemWouldCutOff) {
+    EXPECT_EQ(pathFromText("a b/ü\n.vox")->string(), "a b/ü\n.vox");
+    EXPECT_EQ(pathFromText("").error().code, ErrorCode::BadValue);
+    const auto cut = pathFromText(std::string_view("one.vox\0two.vox", 15));
+    ASSERT_FALSE(cut);
+    EXPECT_THAT(cut.error().message, testing::HasSubstr("after 7 bytes"));
 }
 
 TEST_F(Files, ALinkStaysALinkAndWhatItLeadsToIsReplaced) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <pfvox/files.hpp>
 
 #include "common/text.hpp"
 #include "common/unknown_option.hpp"
@@ -38,6 +39,22 @@ std::optional<std::string> complaintAboutCommand(const CLI::App& tool,
     return fmt::format("{} is neither a command nor a file; did you mean {}?", arguments[1], *nearest);
 }
 
+/// CLI11 takes "[a,b]" among several values for a list of two. As an input it is the name of one file.
+std::vector<std::string> withBracketsKept(const CLI::App& tool, std::vector<std::string> arguments) {
+    const auto isNamed = [&](const CLI::App* app) { return app->get_name() == arguments.front(); };
+    const auto commands = tool.get_subcommands(isNamed);
+    if (commands.empty()) return arguments;
+    bool onlyInputs = false;
+    for (std::size_t i = 1; i < arguments.size(); ++i) {
+        std::string& word = arguments[i];
+        const CLI::Option* before = commands.front()->get_option_no_throw(arguments[i - 1]);
+        const bool isValue = !onlyInputs && before != nullptr && before->get_items_expected_max() > 0;
+        onlyInputs = onlyInputs || word == "--";
+        if (!isValue && word.starts_with('[') && word.ends_with(']')) word.insert(0, "./");
+    }
+    return arguments;
+}
+
 }  // namespace
 
 std::vector<std::string> withDefaultCommand(const CLI::App& tool, int argc, const char* const* argv) {
@@ -60,8 +77,8 @@ std::optional<ExitCode> parseCommandLine(CLI::App& tool, const std::vector<std::
         return ExitCode::Usage;
     }
     try {
-        tool.parse(
-            std::vector<std::string>(arguments.rbegin(), arguments.rend()));  // CLI11 pops from the back
+        const std::vector<std::string> words = withBracketsKept(tool, arguments);
+        tool.parse(std::vector<std::string>(words.rbegin(), words.rend()));  // CLI11 pops from the back
     } catch (const CLI::CallForHelp&) {
         print(stdout, chosenCommand(tool).help());
         return ExitCode::Ok;
@@ -90,6 +107,25 @@ std::function<std::string(const std::string&)> numberFrom(double low, double hig
         if (CLI::detail::lexical_cast(text, value) && value >= low && value <= high) return {};
         return fmt::format("{} is not a number from {} to {}", text, low, high);
     };
+}
+
+std::function<std::string(const std::string&)> outputPath() {
+    return [](const std::string& text) -> std::string {
+        if (text == "-") return "nothing is written to standard output: name a file or folder, or ./- itself";
+        const auto path = io::pathFromText(text);
+        return path ? std::string() : path.error().message;
+    };
+}
+
+void addInputs(CLI::App& command, InputWords& inputs, const std::vector<std::string>& suffixes) {
+    command.add_option("input", inputs.words)
+        ->required()
+        ->check(suggestFiles(suffixes))
+        ->group(group::kInputOutput);
+    command
+        .add_flag("-0,--null", inputs.nullSeparated,
+                  "entries of lists end in NUL, as `find -print0` writes them")
+        ->group(group::kInputOutput);
 }
 
 CLI::Option* addSwitch(CLI::App& command, const std::string& name, bool& value, const std::string& meaning) {
@@ -132,6 +168,7 @@ void addCommonOptions(CLI::App& command, CommonOptions& options) {
         ->option_text("NAME=VALUE")
         ->expected(1)
         ->take_all()
+        ->allow_extra_args(false)
         ->group(group::kGeneral);
 }
 

@@ -13,6 +13,7 @@
 
 #include "common/exit_code.hpp"
 #include "common/help_page.hpp"
+#include "common/inputs.hpp"
 #include "common/reporter.hpp"
 #include "pfvox/limits.hpp"
 
@@ -44,6 +45,14 @@ ExitCode usageError(const CLI::App& command, const std::string& message);
 
 /// A check for options: refuses what is not a finite number from `low` to `high`. (CLI::Range lets NaN pass.)
 std::function<std::string(const std::string&)> numberFrom(double low, double high);
+
+/// A check for options that name what is written: refuses an empty name, and "-", which elsewhere is standard
+/// output.
+std::function<std::string(const std::string&)> outputPath();
+
+/// The inputs of a command that takes several, and how lists of them are written. `suffixes`: of the files
+/// that completion offers.
+void addInputs(CLI::App& command, InputWords& inputs, const std::vector<std::string>& suffixes);
 
 /// `--name` and `--no-name` for one value. It holds what it held until one of them is given: CLI11's own
 /// flags write their variable when they are declared, unless it is a plain bool.

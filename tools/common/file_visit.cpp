@@ -7,15 +7,13 @@
 
 #include "common/inputs.hpp"
 #include "common/json.hpp"
+#include "common/paths.hpp"
 #include "common/resources.hpp"
 
 namespace pfvox::tools {
 
 void addReadOptions(CLI::App& command, ReadOptions& options, const std::string& extension) {
-    command.add_option("input", options.inputs)
-        ->required()
-        ->check(suggestFiles({extension}))
-        ->group(group::kInputOutput);
+    addInputs(command, options.inputs, {extension});
     addCommonOptions(command, options.common);
 }
 
@@ -44,17 +42,21 @@ std::optional<ErrorCode> visitInput(const InputFile& input, const FileVisitor& v
 }  // namespace
 
 ExitCode visitFiles(const CLI::App& command, const ReadOptions& options, const std::string& extension,
-                    const FileVisitor& visit) {
+                    const FileVisitor& visit, const InputsCheck& check) {
     Reporter reporter(options.common.reporterSettings());
     const auto limits = parseLimits(options.common.limits);
     if (!limits) return usageError(command, limits.error());
-    const auto wanted = [&](const std::filesystem::path& file) { return file.extension() == extension; };
+    const auto wanted = [&](const std::filesystem::path& file) { return hasExtension(file, extension); };
     DiagnosticList leftOut;
-    const auto inputs = collectInputs(options.inputs, {.wanted = wanted, .skippedFolder = {}}, leftOut);
+    auto inputs = collectInputs(options.inputs, {.wanted = wanted, .skippedFolder = {}}, leftOut);
     reporter.diagnostics({}, leftOut.entries());
     if (!inputs) {
         reporter.error(inputs.error());
         return exitCodeOf(inputs.error().code);
+    }
+    if (check) {
+        if (const std::string complaint = check(*inputs); !complaint.empty())
+            return usageError(command, complaint);
     }
 
     const int wantedThreads =

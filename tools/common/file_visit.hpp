@@ -15,7 +15,7 @@ namespace pfvox::tools {
 
 struct ReadOptions {
     CommonOptions common;
-    std::vector<std::string> inputs;
+    InputWords inputs;
 };
 
 /// `extension` is that of the files which the command reads.
@@ -29,9 +29,13 @@ ErrorCode reportFailure(Reporter& reporter, const std::filesystem::path& file, E
 using FileVisitor =
     std::function<std::optional<ErrorCode>(const std::filesystem::path&, const Limits&, Reporter&)>;
 
+/// Looks at all inputs before the first is visited, and may mark some as faults. Returns what makes the whole
+/// command wrong usage, if anything does.
+using InputsCheck = std::function<std::string(std::vector<InputFile>&)>;
+
 /// Visits every file that the inputs name, one after the other, each with `-j` threads. Of folders those with
 /// this extension.
 ExitCode visitFiles(const CLI::App& command, const ReadOptions& options, const std::string& extension,
-                    const FileVisitor& visit);
+                    const FileVisitor& visit, const InputsCheck& check = {});
 
 }  // namespace pfvox::tools

@@ -4,13 +4,15 @@
 
 #include <map>
 
+#include "common/paths.hpp"
+
 namespace pfvox::tools {
 
 namespace fs = std::filesystem;
 
 bool namesOutputFile(const fs::path& output, const std::string& extension) {
     std::error_code error;
-    return output.extension() == extension && !fs::is_directory(output, error);
+    return hasExtension(output, extension) && !fs::is_directory(output, error);
 }
 
 namespace {
@@ -38,6 +40,41 @@ std::string complaintAbout(const std::vector<InputFile>& inputs, const fs::path&
     return {};
 }
 
+void refuse(InputOutput& pair, const InputFile& other) {
+    if (pair.input.fault) return;
+    pair.input.fault = Error{.code = ErrorCode::FileNotWritable,
+                             .message = fmt::format("{} would become {}, too: rename one of them, or give it "
+                                                    "another output folder",
+                                                    other.file.string(), pair.output.string()),
+                             .file = pair.input.file};
+}
+
+/// Collects pairs, and what stands in the way of two with one output.
+class Pairing {
+  public:
+    void add(InputOutput pair) {
+        const auto [known, isNew] = indexOfOutput_.emplace(canonicalName(pair.output), pairs_.size());
+        if (!isNew) {
+            InputOutput& first = pairs_[known->second];
+            const bool sameSource = canonicalName(first.input.file) == canonicalName(pair.input.file);
+            if (sameSource && placeOf(first.output) == placeOf(pair.output)) return;
+            if (!sameSource) {
+                refuse(pair, first.input);
+                refuse(first, pair.input);
+            }
+        }
+        pairs_.push_back(std::move(pair));
+    }
+    /// Nothing is to be written for it.
+    void addFault(InputOutput pair) { pairs_.push_back(std::move(pair)); }
+
+    std::vector<InputOutput> take() { return std::move(pairs_); }
+
+  private:
+    std::vector<InputOutput> pairs_;
+    std::map<fs::path, std::size_t> indexOfOutput_;  ///< by what is written to
+};
+
 }  // namespace
 
 tl::expected<std::vector<InputOutput>, std::string> pairOutputs(
@@ -47,13 +84,8 @@ tl::expected<std::vector<InputOutput>, std::string> pairOutputs(
         return tl::make_unexpected(std::move(complaint));
     }
     const bool toFile = namesOutputFile(output, extension);
-    std::vector<InputOutput> pairs;
-    std::map<fs::path, fs::path> inputOfOutput;
+    Pairing pairing;
     for (InputFile& input : inputs) {
-        if (input.fault) {
-            pairs.push_back({.input = input, .output = output / input.relative});
-            continue;
-        }
         const bool keeps = keepsName && keepsName(input);
         if (keeps && toFile) {
             return tl::make_unexpected(
@@ -62,20 +94,16 @@ tl::expected<std::vector<InputOutput>, std::string> pairOutputs(
         }
         fs::path target = output / input.relative;
         if (!keeps) target = toFile ? output : target.replace_extension(extension);
-        const fs::path name = canonicalName(target);
-        if (name == canonicalName(input.file)) {
-            if (input.fromFolder) continue;
+        if (input.fault) {
+            pairing.addFault({.input = std::move(input), .output = target});
+        } else if (canonicalName(target) != canonicalName(input.file)) {
+            pairing.add({.input = std::move(input), .output = target});
+        } else if (!input.fromFolder) {
             return tl::make_unexpected(
                 fmt::format("{} would be overwritten by its own output", input.file.string()));
         }
-        const auto [other, isNew] = inputOfOutput.emplace(name, input.file);
-        if (!isNew) {
-            return tl::make_unexpected(fmt::format("{} and {} would both become {}", other->second.string(),
-                                                   input.file.string(), target.string()));
-        }
-        pairs.push_back({.input = std::move(input), .output = target});
     }
-    return pairs;
+    return pairing.take();
 }
 
 }  // namespace pfvox::tools

@@ -23,8 +23,9 @@ struct InputOutput {
 bool namesOutputFile(const std::filesystem::path& output, const std::string& extension);
 
 /// Pairs every input with its output; inputs for which `keepsName` holds keep their own extension. A file of
-/// a searched folder that would be its own output is left out: it is an output of an earlier run. The error
-/// text (wrong usage) names both sides when two inputs have the same output or when a named input would be
+/// a searched folder that would be its own output is left out: it is an output of an earlier run. Inputs that
+/// would become the same output get a fault each (FileNotWritable), so that the others go on; the same file
+/// twice is taken once. The error text (wrong usage) names both sides when a named input would be
 /// overwritten.
 tl::expected<std::vector<InputOutput>, std::string> pairOutputs(
     std::vector<InputFile> inputs, const std::filesystem::path& output, const std::string& extension,

@@ -143,7 +143,7 @@ void Reporter::progress(std::string_view line) {
     if (!showsProgress()) return;
     const std::scoped_lock lock(mutex_);
     write(stderr, kEraseLine);
-    write(stderr, line);
+    write(stderr, escaped(line));
     std::fflush(stderr);
     progressShown_ = true;
 }
@@ -165,7 +165,8 @@ bool Reporter::showsProgress() const {
 }
 
 std::string Reporter::styled(Style style, std::string_view text) const {
-    return colorOut_ ? fmt::format("{}{}{}", codeOf(style), text, kReset) : std::string(text);
+    const std::string shown = escaped(text);
+    return colorOut_ ? fmt::format("{}{}{}", codeOf(style), shown, kReset) : shown;
 }
 
 std::size_t Reporter::warningCount(std::span<const Diagnostic> entries) {

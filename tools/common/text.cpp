@@ -52,6 +52,13 @@ std::size_t displayWidth(std::string_view utf8) {
         std::ranges::count_if(utf8, [](char c) { return (static_cast<unsigned char>(c) & 0xc0u) != 0x80u; }));
 }
 
+std::string lowerCase(std::string_view ascii) {
+    std::string text(ascii);
+    std::ranges::transform(text, text.begin(),
+                           [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
+    return text;
+}
+
 namespace {
 
 /// Optimal string alignment distance.
@@ -68,13 +75,6 @@ std::size_t editDistance(std::string_view a, std::string_view b) {
         }
     }
     return cost[a.size()][b.size()];
-}
-
-std::string lowerCase(std::string_view ascii) {
-    std::string text(ascii);
-    std::ranges::transform(text, text.begin(),
-                           [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
-    return text;
 }
 
 /// A pattern as an automaton: which of its steps can come next after what was read of the path. The time is

@@ -28,6 +28,9 @@ std::string formatDuration(double seconds);
 /// Columns that UTF-8 text takes on a terminal, counting one for each code point.
 std::size_t displayWidth(std::string_view utf8);
 
+/// A to Z become a to z; other characters stay.
+std::string lowerCase(std::string_view text);
+
 /// Text from outside (names, paths, messages about them) as one line that is safe to show: line ends, control
 /// characters, marks that turn the direction of writing and bytes that are not UTF-8 become \n, \x1b,
 /// \u{202e}.

@@ -23,7 +23,7 @@ void addOptionNames(const CLI::App& command, std::vector<std::string>& names) {
 
 std::optional<std::string> complaintAboutUnknownOption(const CLI::App& tool, const CLI::App& command) {
     for (const std::string& word : tool.remaining(true)) {
-        if (!word.starts_with('-')) continue;
+        if (!word.starts_with('-') || word == "--") continue;
         const std::string name = word.substr(0, word.find('='));
         std::vector<std::string> names;
         addOptionNames(command, names);

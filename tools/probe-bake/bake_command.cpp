@@ -10,6 +10,7 @@
 #include "common/depfile.hpp"
 #include "common/inputs.hpp"
 #include "common/interrupt.hpp"
+#include "common/paths.hpp"
 #include "common/text.hpp"
 #include "probe-bake/bake_options.hpp"
 #include "probe-bake/bake_report.hpp"
@@ -56,40 +57,39 @@ class ToolObserver final : public BakeObserver {
     Clock::time_point shown_;
 };
 
-/// What was at the place of the output before.
-struct Existing {
-    bool present = false;
-    std::optional<ContentKey> key;
-    ProbeRange range;
+/// What was at the place of the output before, for --if-changed.
+struct Previous {
     std::optional<fs::file_time_type> time;
-    std::optional<io::FileBytes> bytes;  ///< only where they are compared afterwards
+    std::optional<io::FileBytes> bytes;
 };
 
-Existing inspect(const BakeOptions& options, const Limits& limits) {
-    Existing existing;
+Previous previousOf(const BakeOptions& options, const Limits& limits) {
+    Previous previous;
     std::error_code error;
-    existing.present = fs::exists(options.output, error);
-    if (!existing.present) return existing;
-    DiagnosticList ignored;
-    if (const auto reader = ProbeFileReader::open(options.output, limits, ignored)) {
-        existing.key = reader->contentKey();
-        existing.range = reader->info().range;
-    }
-    if (!options.ifChanged) return existing;
-    if (const auto time = fs::last_write_time(options.output, error); !error) existing.time = time;
-    if (auto bytes = io::readFile(options.output, limits.maxFileBytes)) existing.bytes = *std::move(bytes);
-    return existing;
+    if (!options.ifChanged || !fs::is_regular_file(options.output, error)) return previous;
+    if (const auto time = fs::last_write_time(options.output, error); !error) previous.time = time;
+    if (auto bytes = io::readFile(options.output, limits.maxFileBytes)) previous.bytes = *std::move(bytes);
+    return previous;
 }
 
-std::string reasonFor(const BakeOptions& options, const Existing& existing, const ContentKey& wanted,
-                      const ProbeRange& range) {
-    if (!existing.present) return "there was no output";
-    if (options.force) return "--force";
-    if (!existing.key) return "the existing output is not a complete PF_PROBE file of this version";
-    if (existing.range != range) return "the existing output holds other probes";
-    return *existing.key == wanted
-               ? "same scene, settings, program and device as in the last bake"
-               : "the scene, the settings, the program or the device changed since the last bake";
+std::string reasonFor(const BakeOptions& options, const ExistingBake& existing) {
+    using State = ExistingBake::State;
+    if (options.force && existing.state != State::None) return "--force";
+    switch (existing.state) {
+        case State::None:
+            return "there was no output";
+        case State::Unreadable:
+            return "the existing output is not a complete PF_PROBE file of this version";
+        case State::OtherProbes:
+            return "the existing output holds other probes";
+        case State::OtherContent:
+            return "the scene, the settings, the program or the device changed since the last bake";
+        case State::Damaged:
+            return "the existing output was damaged (" + existing.damage + ")";
+        case State::UpToDate:
+            return "same scene, settings, program and device as in the last bake";
+    }
+    return {};
 }
 
 /// Fails when the output is one that must not be replaced: better now than after the bake.
@@ -150,14 +150,14 @@ Result<void> writeDependencies(const BakeOptions& options, const LoadedScene& sc
 
 /// --if-changed: the same bytes get their old time back. With a depfile and without it, what is up to date
 /// gets the present one, or make would run the bake for ever.
-void setTimeStamp(const BakeOptions& options, const Existing& existing, bool upToDate, const Limits& limits) {
+void setTimeStamp(const BakeOptions& options, const Previous& previous, bool upToDate, const Limits& limits) {
     std::error_code ignored;
     if (upToDate && !options.ifChanged && !options.depfile.empty())
         fs::last_write_time(options.output, fs::file_time_type::clock::now(), ignored);
-    if (upToDate || !existing.bytes || !existing.time) return;
+    if (upToDate || !previous.bytes || !previous.time) return;
     const auto now = io::readFile(options.output, limits.maxFileBytes);
-    if (now && std::ranges::equal(now->bytes(), existing.bytes->bytes()))
-        fs::last_write_time(options.output, *existing.time, ignored);
+    if (now && std::ranges::equal(now->bytes(), previous.bytes->bytes()))
+        fs::last_write_time(options.output, *previous.time, ignored);
 }
 
 /// One run, from loaded scene to written file.
@@ -199,26 +199,35 @@ class BakeRun {
             gpu::Device, device,
             gpu::Device::open({.selector = options_.device, .memoryBytes = options_.deviceMemoryMiB << 20}));
         outcome_.device = device.info().name;
-        const Existing existing = inspect(options_, limits_);
         const ContentKey key = bakeContentKey(scene, *settings, device.info());
         const ProbeRange range =
             settings->range.value_or(ProbeRange{0, static_cast<std::uint32_t>(scene.probes.probeCount())});
+        const ExistingBake existing = inspectBake(options_.output, key, range);
         outcome_.contentKey = key;
-        outcome_.reason = reasonFor(options_, existing, key, range);
-        const bool isUpToDate = !options_.force && existing.key == key && existing.range == range;
-        if (!isUpToDate) PFVOX_CHECK(checkOutput(options_));
-        if (options_.dryRun) {
-            outcome_.planned = true;
-            outcome_.report.probes = range.size();
-            outcome_.report.upToDate = isUpToDate;
-            return {};
+        outcome_.reason = reasonFor(options_, existing);
+        outcome_.report.probes = range.size();
+        const bool isUpToDate = !options_.force && existing.state == ExistingBake::State::UpToDate;
+        const Previous previous = previousOf(options_, limits_);
+        if (isUpToDate) {
+            outcome_.status = BakeStatus::UpToDate;
+            outcome_.report.upToDate = true;
+            outcome_.report.fileBytes = existing.fileBytes;
+            outcome_.report.counts = existing.counts;
+        } else {
+            PFVOX_CHECK(checkOutput(options_));
+            outcome_.status = BakeStatus::Planned;
         }
-        ToolObserver observer(reporter_, options_.output);
-        auto report = bakeProbes(device, scene, *settings, options_.output, observer, diagnostics);
-        last_ = observer.last();
-        if (!report) return tl::make_unexpected(withRemedy(std::move(report).error(), options_, &device));
-        outcome_.report = *report;
-        setTimeStamp(options_, existing, report->upToDate, limits_);
+        if (options_.dryRun) return {};
+        if (!isUpToDate) {
+            ToolObserver observer(reporter_, options_.output);
+            auto report = bakeProbes(device, scene, *settings, options_.output, observer, diagnostics);
+            last_ = observer.last();
+            if (!report) return tl::make_unexpected(withRemedy(std::move(report).error(), options_, &device));
+            outcome_.report = *report;
+            outcome_.status = BakeStatus::Baked;
+            outcome_.isRepair = existing.state == ExistingBake::State::Damaged;
+        }
+        setTimeStamp(options_, previous, isUpToDate, limits_);
         return writeDependencies(options_, scene);
     }
 

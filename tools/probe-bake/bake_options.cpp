@@ -138,6 +138,7 @@ void addRunOptions(CLI::App& command, BakeOptions& options) {
     command
         .add_option("--depfile", options.depfile, "write what the output was made from, for make and ninja")
         ->option_text("FILE")
+        ->check(outputPath())
         ->check(suggestFiles({".d"}))
         ->group(group::kBuild);
     command
@@ -153,7 +154,7 @@ void addRunOptions(CLI::App& command, BakeOptions& options) {
 }  // namespace
 
 void addDeviceOption(CLI::App& command, std::string& device) {
-    command.add_option("--device", device, "number or part of the name")
+    command.add_option("--device", device, "number in --list-devices, else part of the name")
         ->option_text("DEVICE")
         ->check(showDefault("the first real GPU, else the first device"))
         ->group(kBaking);
@@ -165,6 +166,7 @@ void addBakeOptions(CLI::App& command, BakeOptions& options) {
         ->group(group::kInputOutput);
     command.add_option("-o,--output", options.output, "the probe file (.pf_probe); required")
         ->option_text("FILE")
+        ->check(outputPath())
         ->check(suggestFiles({kPfProbeExtension}))
         ->group(group::kInputOutput);
     command.add_flag("--force", options.force, "bake what is up to date, too; replace a read-only output")

@@ -20,8 +20,10 @@ Json passJson(const BakePass& pass) {
 }
 
 const char* statusOf(const BakeOutcome& outcome) {
-    if (!outcome.error) return outcome.report.upToDate ? "up-to-date" : outcome.planned ? "planned" : "baked";
-    return outcome.error->code == ErrorCode::Cancelled ? "interrupted" : "failed";
+    if (outcome.error) return outcome.error->code == ErrorCode::Cancelled ? "interrupted" : "failed";
+    return outcome.status == BakeStatus::UpToDate  ? "up-to-date"
+           : outcome.status == BakeStatus::Planned ? "planned"
+                                                   : "baked";
 }
 
 std::string noiseLine(const BakeReport& report) {
@@ -60,14 +62,17 @@ std::string progressLine(const std::string& output, const BakeProgress& progress
 
 std::string bakeText(const BakeOutcome& outcome, bool explain) {
     const BakeReport& report = outcome.report;
-    const std::string why = explain ? ": " + outcome.reason : "";
-    if (report.upToDate) return fmt::format("{} is up to date{}\n", outcome.output, why);
-    if (outcome.planned)
-        return fmt::format("would bake {} -> {}: {} on {}: {}\n", outcome.input, outcome.output,
-                           plural(report.probes, "probe"), outcome.device, outcome.reason);
-    std::string text = fmt::format("baked {} -> {}: {}, {} in {}{}\n", outcome.input, outcome.output,
-                                   plural(report.probes, "probe"), formatBytes(report.fileBytes),
-                                   formatDuration(report.totalMs * 1e-3), why);
+    const std::string reason = escaped(outcome.reason);
+    const std::string input = escaped(outcome.input);
+    const std::string output = escaped(outcome.output);
+    const std::string why = explain || outcome.isRepair ? ": " + reason : "";
+    if (outcome.status == BakeStatus::UpToDate) return fmt::format("{} is up to date{}\n", output, why);
+    if (outcome.status == BakeStatus::Planned)
+        return fmt::format("would bake {} -> {}: {} on {}: {}\n", input, output,
+                           plural(report.probes, "probe"), outcome.device, reason);
+    std::string text =
+        fmt::format("baked {} -> {}: {}, {} in {}{}\n", input, output, plural(report.probes, "probe"),
+                    formatBytes(report.fileBytes), formatDuration(report.totalMs * 1e-3), why);
     text += fmt::format("  {}; {} from the journal\n", countsText(report.counts), formatCount(report.reused));
     text += fmt::format("  {} rays for geometry at {} rays/s, {} for light at {} rays/s on {}\n",
                         formatRoughly(static_cast<double>(report.geometry.rays)),
@@ -79,31 +84,35 @@ std::string bakeText(const BakeOutcome& outcome, bool explain) {
 
 Json bakeJson(const BakeOutcome& outcome) {
     const BakeReport& report = outcome.report;
+    const bool isBaked = outcome.status == BakeStatus::Baked && !outcome.error;
+    const bool isThere = isBaked || outcome.status == BakeStatus::UpToDate;
+    const auto known = [](bool isKnown, Json value) { return isKnown ? std::move(value) : Json(nullptr); };
     Json json;
     json["input"] = outcome.input;
     json["output"] = outcome.output;
     json["status"] = statusOf(outcome);
     json["reason"] = outcome.reason;
     json["contentKey"] = outcome.contentKey ? Json(outcome.contentKey->hex()) : Json(nullptr);
-    json["device"] = outcome.device;
-    json["probes"] = report.probes;
-    json["reused"] = report.reused;
-    json.update(countsJson(report.counts));
-    json["geometry"] = passJson(report.geometry);
-    json["light"] = passJson(report.light);
-    json["smallLayersMs"] = report.smallLayersMs;
-    json["proximityMs"] = report.proximityMs;
-    json["writeMs"] = report.writeMs;
-    json["totalMs"] = report.totalMs;
-    json["emitterFaces"] = report.emitterFaces;
-    json["stepLimitRays"] = report.stepLimitRays;
+    json["device"] = known(!outcome.device.empty(), outcome.device);
+    json["probes"] = known(outcome.status != BakeStatus::Failed, report.probes);
+    json["reused"] = known(isBaked, report.reused);
+    const Json counts = countsJson(report.counts);
+    for (const auto& [name, count] : counts.items()) json[name] = known(isThere, count);
+    json["geometry"] = known(isBaked, passJson(report.geometry));
+    json["light"] = known(isBaked, passJson(report.light));
+    json["smallLayersMs"] = known(isBaked, report.smallLayersMs);
+    json["proximityMs"] = known(isBaked, report.proximityMs);
+    json["writeMs"] = known(isBaked, report.writeMs);
+    json["totalMs"] = known(isBaked, report.totalMs);
+    json["emitterFaces"] = known(isBaked, report.emitterFaces);
+    json["stepLimitRays"] = known(isBaked, report.stepLimitRays);
     json["meanError"] = orNull(report.meanError);
     json["maxError"] = orNull(report.maxError);
     json["noisyTileFraction"] = orNull(report.noisyTileFraction);
     json["meanSamples"] = orNull(report.meanSamples);
-    json["surfaceCells"] = report.proximity.surfaceCells;
-    json["uncoveredCells"] = report.proximity.uncoveredCells;
-    json["fileBytes"] = report.fileBytes;
+    json["surfaceCells"] = known(isBaked, report.proximity.surfaceCells);
+    json["uncoveredCells"] = known(isBaked, report.proximity.uncoveredCells);
+    json["fileBytes"] = known(isThere, report.fileBytes);
     json["diagnostics"] = toJson(outcome.diagnostics);
     json["error"] = outcome.error ? toJson(*outcome.error) : Json(nullptr);
     return json;

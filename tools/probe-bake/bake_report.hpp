@@ -10,16 +10,25 @@
 
 namespace pfvox::tools {
 
+enum class BakeStatus {
+    Failed,    ///< with `error`
+    Planned,   ///< --dry-run, or it did not come to the bake
+    UpToDate,  ///< nothing was done
+    Baked,
+};
+
 /// What came of one bake.
 struct BakeOutcome {
-    bool planned = false;  ///< --dry-run: of the report, `probes` and `upToDate` count
+    BakeStatus status = BakeStatus::Failed;
+    bool isRepair = false;  ///< the output that was replaced was damaged
     std::string input;
     std::string output;
     std::string device;
     std::string reason;  ///< why it was baked or not, one clause
     std::optional<ContentKey>
-        contentKey;  ///< of what was asked for; nothing = it failed before that was known
-    BakeReport report;
+        contentKey;     ///< of what was asked for; nothing = it failed before that was known
+    BakeReport report;  ///< all of it is known of what was baked; `probes` once planned, `counts` and
+                        ///< `fileBytes` when up to date
     std::vector<Diagnostic> diagnostics;
     std::optional<Error> error;
 };

@@ -193,7 +193,7 @@ std::string headline(const ProbeFileInfo& info) {
     if (!field.isWhole())
         text += fmt::format("  a shard: probes {} to {}\n", field.range.first, field.range.end - 1);
     text += fmt::format("  {}, --seed {}, by {} on {}\n", samplesText(settings), settings.seed,
-                        field.toolName, field.deviceName);
+                        escaped(field.toolName), escaped(field.deviceName));
     text += "  " + probeSettingsText(settings) + "\n";
     if (info.proximityCounts)
         text +=

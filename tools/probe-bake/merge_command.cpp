@@ -8,6 +8,7 @@
 #include "common/file_visit.hpp"
 #include "common/inputs.hpp"
 #include "common/json.hpp"
+#include "common/paths.hpp"
 #include "common/text.hpp"
 #include "probe-bake/commands.hpp"
 
@@ -77,7 +78,7 @@ ExitCode runMerge(const CLI::App& command, const MergeOptions& options) {
         return exitCodeOf(error.code);
     };
     const auto wanted = [](const std::filesystem::path& file) {
-        return file.extension() == kPfProbeExtension;
+        return hasExtension(file, kPfProbeExtension);
     };
     DiagnosticList diagnostics;
     const auto inputs = collectInputs(options.inputs, {.wanted = wanted, .skippedFolder = {}}, diagnostics);
@@ -100,7 +101,8 @@ ExitCode runMerge(const CLI::App& command, const MergeOptions& options) {
     if (!merged) return stopWith(merged.error());
     if (options.common.json)
         reporter.jsonLine(jsonText(Json{{"output", options.output}, {"shards", shards.size()}}));
-    reporter.result(fmt::format("merged {} into {}\n", plural(shards.size(), "shard"), options.output));
+    reporter.result(
+        fmt::format("merged {} into {}\n", plural(shards.size(), "shard"), escaped(options.output)));
     return ExitCode::Ok;
 }
 
@@ -112,6 +114,7 @@ Command makeMergeCommand(CLI::App& tool) {
     command.add_option("-o,--output", options->output, "the joined file; required")
         ->option_text("FILE")
         ->required()
+        ->check(outputPath())
         ->check(suggestFiles({kPfProbeExtension}))
         ->group(group::kInputOutput);
     command

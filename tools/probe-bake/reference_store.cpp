@@ -7,8 +7,6 @@
 #include <optional>
 #include <pfvox/files.hpp>
 
-#include "probe-bake/verify_report.hpp"
-
 namespace pfvox::tools {
 
 namespace {
@@ -59,22 +57,23 @@ std::optional<ReferencePicture> decode(std::span<const std::byte> bytes, const s
 ReferenceStore::ReferenceStore(std::filesystem::path folder, const ContentKey& scene)
     : folder_(std::move(folder)), scene_(hexOf(scene)) {}
 
-std::filesystem::path ReferenceStore::fileOf(const Camera& camera, const VerifySettings& settings) const {
-    return folder_ / fmt::format("{}-{}-{}x{}.reference", scene_.substr(0, 8), fileNameOf(camera),
-                                 settings.width, settings.height);
+std::filesystem::path ReferenceStore::fileOf(const NamedCamera& named, const VerifySettings& settings) const {
+    return folder_ / fmt::format("{}-{}-{}x{}.reference", scene_.substr(0, 8), named.fileName, settings.width,
+                                 settings.height);
 }
 
-ReferencePicture ReferenceStore::find(const Camera& camera, const VerifySettings& settings) const {
+ReferencePicture ReferenceStore::find(const NamedCamera& named, const VerifySettings& settings) const {
     if (folder_.empty()) return {};
-    const auto stored = io::readFile(fileOf(camera, settings), kMaxReferenceBytes);
+    const auto stored = io::readFile(fileOf(named, settings), kMaxReferenceBytes);
     if (!stored) return {};
-    return decode(stored->bytes(), lineOf(scene_, camera, settings), settings).value_or(ReferencePicture{});
+    return decode(stored->bytes(), lineOf(scene_, named.camera, settings), settings)
+        .value_or(ReferencePicture{});
 }
 
-Result<void> ReferenceStore::keep(const Camera& camera, const VerifySettings& settings,
+Result<void> ReferenceStore::keep(const NamedCamera& named, const VerifySettings& settings,
                                   const ReferencePicture& picture) const {
     if (folder_.empty()) return {};
-    const std::string line = lineOf(scene_, camera, settings) + std::to_string(picture.samples) + "\n";
+    const std::string line = lineOf(scene_, named.camera, settings) + std::to_string(picture.samples) + "\n";
     std::vector<std::byte> bytes;
     const auto add = [&](std::span<const std::byte> part) {
         bytes.insert(bytes.end(), part.begin(), part.end());
@@ -82,7 +81,7 @@ Result<void> ReferenceStore::keep(const Camera& camera, const VerifySettings& se
     add(std::as_bytes(std::span(line)));
     add(std::as_bytes(std::span(picture.even)));
     add(std::as_bytes(std::span(picture.odd)));
-    return io::writeFileAtomically(fileOf(camera, settings), bytes);
+    return io::writeFileAtomically(fileOf(named, settings), bytes);
 }
 
 }  // namespace pfvox::tools

@@ -6,6 +6,8 @@
 #include <filesystem>
 #include <pfvox/verify.hpp>
 
+#include "probe-bake/verify_report.hpp"
+
 namespace pfvox::tools {
 
 class ReferenceStore {
@@ -15,14 +17,14 @@ class ReferenceStore {
 
     /// The picture that was kept last, with as many paths as it has; an empty one (`samples` 0) without any
     /// that fits.
-    ReferencePicture find(const Camera& camera, const VerifySettings& settings) const;
+    ReferencePicture find(const NamedCamera& named, const VerifySettings& settings) const;
 
     /// Instead of what was kept before. Errors: FileNotWritable.
-    Result<void> keep(const Camera& camera, const VerifySettings& settings,
+    Result<void> keep(const NamedCamera& named, const VerifySettings& settings,
                       const ReferencePicture& picture) const;
 
   private:
-    std::filesystem::path fileOf(const Camera& camera, const VerifySettings& settings) const;
+    std::filesystem::path fileOf(const NamedCamera& named, const VerifySettings& settings) const;
 
     std::filesystem::path folder_;
     std::string scene_;

@@ -66,20 +66,21 @@ Camera outsideCamera(const WorldBounds& bounds) {
     return {.name = "outside", .position = center + diagonal * glm::dvec3{0.5, 0.4, 0.8}, .target = center};
 }
 
-Result<std::vector<Camera>> chosenCameras(const VerifyOptions& options, const LoadedScene& scene) {
-    std::vector<Camera> cameras = scene.scene.cameras;
-    if (cameras.empty()) cameras.push_back(outsideCamera(scene.bounds));
+Result<std::vector<NamedCamera>> chosenCameras(const VerifyOptions& options, const LoadedScene& scene) {
+    std::vector<Camera> all = scene.scene.cameras;
+    if (all.empty()) all.push_back(outsideCamera(scene.bounds));
+    std::vector<NamedCamera> cameras = namedCameras(all);
     if (options.cameras.empty()) return cameras;
-    std::vector<Camera> chosen;
+    std::vector<NamedCamera> chosen;
     for (const std::string& name : options.cameras) {
-        const auto found = std::ranges::find(cameras, name, &Camera::name);
-        if (found == cameras.end()) {
+        const auto found = std::ranges::find(all, name, &Camera::name);
+        if (found == all.end()) {
             std::string names;
-            for (const Camera& camera : cameras) names += (names.empty() ? "" : ", ") + camera.name;
+            for (const Camera& camera : all) names += (names.empty() ? "" : ", ") + camera.name;
             return fail(ErrorCode::BadReference,
                         fmt::format("there is no camera \"{}\"; there are: {}", name, names));
         }
-        chosen.push_back(*found);
+        chosen.push_back(cameras[static_cast<std::size_t>(found - all.begin())]);
     }
     return chosen;
 }
@@ -121,7 +122,7 @@ class VerifyRun {
   private:
     Result<void> runAll(DiagnosticList& diagnostics) {
         PFVOX_TRY(const LoadedScene, loaded, loadScene(options_.inputs[0], limits_, diagnostics));
-        PFVOX_TRY(const std::vector<Camera>, cameras, chosenCameras(options_, loaded));
+        PFVOX_TRY(const std::vector<NamedCamera>, cameras, chosenCameras(options_, loaded));
         PFVOX_TRY(const ProbeFileReader, reader,
                   ProbeFileReader::open(options_.inputs[1], limits_, diagnostics));
         PFVOX_TRY(gpu::Device, device, gpu::Device::open({.selector = options_.device}));
@@ -139,9 +140,9 @@ class VerifyRun {
                                       .samples = options_.samples,
                                       .maxBounces = std::min(bounces, VerifySettings{}.maxBounces)};
         const ReferenceStore store(options_.references, reader.info().sceneHash);
-        for (const Camera& camera : cameras) {
-            const VerifyInput input{loaded, scene, probes, camera};
-            PFVOX_TRY(const CameraVerdict, verdict, judge({device, verifier, store, input}, settings));
+        for (const NamedCamera& named : cameras) {
+            const VerifyInput input{loaded, scene, probes, named.camera};
+            PFVOX_TRY(const CameraVerdict, verdict, judge({device, verifier, store, input, named}, settings));
             reporter_.clearProgress();
             report(verdict);
             if (!options_.output.empty()) PFVOX_CHECK(writePictures(options_.output, verdict));
@@ -154,28 +155,28 @@ class VerifyRun {
         const ProbeVerifier& verifier;
         const ReferenceStore& store;
         const VerifyInput& input;
+        const NamedCamera& named;
     };
 
     /// Adds paths to the reference until it is good enough for the error that it finds, or may have no more.
     Result<CameraVerdict> judge(const Judged& with, VerifySettings settings) {
-        const Camera& camera = with.input.camera;
         const ReferenceTarget target = targetOf(options_);
         settings.samples = std::min(settings.samples, target.maxSamples);
-        ReferencePicture reference = with.store.find(camera, settings);
+        ReferencePicture reference = with.store.find(with.named, settings);
         for (;;) {
-            reporter_.progress(
-                fmt::format("camera {}: {} paths a pixel", camera.name, formatCount(settings.samples)));
+            reporter_.progress(fmt::format("camera {}: {} paths a pixel", with.named.camera.name,
+                                           formatCount(settings.samples)));
             if (reference.samples < settings.samples) {
                 PFVOX_TRY(ReferencePicture, traced,
                           with.verifier.trace(with.device, with.input, settings, std::move(reference)));
-                PFVOX_CHECK(with.store.keep(camera, settings, traced));
+                PFVOX_CHECK(with.store.keep(with.named, settings, traced));
                 reference = std::move(traced);
             }
             PFVOX_TRY(VerifiedPicture, picture, with.verifier.lookUp(with.device, with.input, reference));
             settings.samples = target.nextSamples(partOfAll(picture), reference.samples);
             if (settings.samples > reference.samples) continue;
             VerifyScore score = scoreOf(picture);
-            return CameraVerdict{camera, std::move(picture), std::move(score), reference.samples, target};
+            return CameraVerdict{with.named, std::move(picture), std::move(score), reference.samples, target};
         }
     }
 
@@ -184,9 +185,10 @@ class VerifyRun {
         if (options_.common.json) reporter_.jsonLine(jsonText(verdictJson(verdict)));
         addRow(table_, verdict);
         if (const std::string what = uncertaintyOf(verdict); !what.empty())
-            uncertain_ += verdict.camera.name + ": " + what + "\n";
+            uncertain_ += escaped(verdict.named.camera.name) + ": " + what + "\n";
         const auto add = [&](std::string what) {
-            complaint_ += (complaint_.empty() ? "" : "; ") + verdict.camera.name + ": " + std::move(what);
+            complaint_ +=
+                (complaint_.empty() ? "" : "; ") + verdict.named.camera.name + ": " + std::move(what);
         };
         if (score.withoutValue != 0) {
             withoutValue_ = true;
@@ -242,6 +244,7 @@ Command makeVerifyCommand(CLI::App& tool) {
         .add_option("-o,--output", options->output,
                     "folder for the pictures: probes, reference, FLIP and tiers")
         ->option_text("FOLDER")
+        ->check(outputPath())
         ->check(suggestFiles({}))
         ->group(group::kInputOutput);
     command.add_option("--camera", options->cameras, "a camera of the scene; may be given again")
@@ -249,6 +252,7 @@ Command makeVerifyCommand(CLI::App& tool) {
         ->check(showDefault("all"))
         ->expected(1)
         ->take_all()
+        ->allow_extra_args(false)
         ->group(kVerifying);
     command.add_option("--size", options->size, "of the pictures")
         ->option_text("WxH")
@@ -276,6 +280,7 @@ Command makeVerifyCommand(CLI::App& tool) {
         .add_option("--references", options->references,
                     "folder of references: paths there are not traced again, new ones are added")
         ->option_text("FOLDER")
+        ->check(outputPath())
         ->group(kVerifying);
     command.add_flag("--compact", options->compact, "look at the small maps only")->group(kVerifying);
     command

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 
+#include "common/paths.hpp"
 #include "common/text.hpp"
 #include "probe-bake/picture_file.hpp"
 
@@ -40,11 +40,13 @@ Json referenceJson(const CameraVerdict& verdict) {
 
 }  // namespace
 
-std::string fileNameOf(const Camera& camera) {
-    std::string name = camera.name.empty() ? "camera" : camera.name;
-    std::ranges::replace_if(
-        name, [](unsigned char c) { return std::isalnum(c) == 0 && c != '-' && c != '_'; }, '_');
-    return name;
+std::vector<NamedCamera> namedCameras(std::span<const Camera> cameras) {
+    std::vector<std::string> names;
+    for (const Camera& camera : cameras) names.push_back(camera.name.empty() ? "camera" : camera.name);
+    const std::vector<std::string> fileNames = safeFileNames(names);
+    std::vector<NamedCamera> named;
+    for (std::size_t i = 0; i < cameras.size(); ++i) named.push_back({cameras[i], fileNames[i]});
+    return named;
 }
 
 Table verdictTable() {
@@ -70,13 +72,13 @@ void addRow(Table& table, const CameraVerdict& verdict) {
     const auto tier = [&](gpu::ProbeTier t) {
         return percent(score.tierFractions[static_cast<std::size_t>(t)]);
     };
-    table.addRow({verdict.camera.name, formatCount(score.surfacePixels), formatCount(score.withoutValue),
-                  tier(gpu::ProbeTier::Texels), tier(gpu::ProbeTier::Compact), tier(gpu::ProbeTier::Nearest),
-                  percent(score.all.relativeRmse), percent(score.all.relativeTrimmedRmse),
-                  formatCount(verdict.samples), percent(score.all.relativeNoise),
-                  percent(score.all.relativeError), percent(score.texels().relativeError),
-                  fmt::format("{:.2f}", score.psnrDecibel), fmt::format("{:.4f}", score.meanFlip),
-                  fmt::format("{:.4f}", score.noiseFlip)});
+    table.addRow(
+        {verdict.named.camera.name, formatCount(score.surfacePixels), formatCount(score.withoutValue),
+         tier(gpu::ProbeTier::Texels), tier(gpu::ProbeTier::Compact), tier(gpu::ProbeTier::Nearest),
+         percent(score.all.relativeRmse), percent(score.all.relativeTrimmedRmse),
+         formatCount(verdict.samples), percent(score.all.relativeNoise), percent(score.all.relativeError),
+         percent(score.texels().relativeError), fmt::format("{:.2f}", score.psnrDecibel),
+         fmt::format("{:.4f}", score.meanFlip), fmt::format("{:.4f}", score.noiseFlip)});
 }
 
 std::string uncertaintyOf(const CameraVerdict& verdict) {
@@ -102,7 +104,7 @@ Json verdictJson(const CameraVerdict& verdict) {
         if (score.byMaterial[i].pixels != 0)
             materials[toString(static_cast<MaterialType>(i))] = partJson(score.byMaterial[i]);
     }
-    return {{"camera", verdict.camera.name},
+    return {{"camera", verdict.named.camera.name},
             {"width", verdict.picture.width},
             {"height", verdict.picture.height},
             {"surfacePixels", score.surfacePixels},
@@ -138,7 +140,7 @@ Result<void> writePictures(const std::filesystem::path& folder, const CameraVerd
     constexpr std::array<const char*, 4> kNames{"probes", "reference", "flip", "tiers"};
     for (std::size_t i = 0; i < images.size(); ++i) {
         const std::filesystem::path file =
-            folder / fmt::format("{}-{}.png", fileNameOf(verdict.camera), kNames[i]);
+            folder / fmt::format("{}-{}.png", verdict.named.fileName, kNames[i]);
         PFVOX_CHECK(writePicture(file, {picture.width, picture.height}, images[i]));
     }
     return {};

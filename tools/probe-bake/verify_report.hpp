@@ -3,23 +3,32 @@
 #pragma once
 
 #include <pfvox/verify.hpp>
+#include <span>
+#include <string>
+#include <vector>
 
 #include "common/json.hpp"
 #include "common/table.hpp"
 
 namespace pfvox::tools {
 
+struct NamedCamera {
+    Camera camera;
+    std::string fileName;  ///< begins the names of its files; differs from those of other cameras
+};
+
+/// With characters only that every file system takes. Of all cameras of a scene at once, so that those of one
+/// do not depend on which others are looked at.
+std::vector<NamedCamera> namedCameras(std::span<const Camera> cameras);
+
 /// One camera, and how its figures came about.
 struct CameraVerdict {
-    Camera camera;
+    NamedCamera named;
     VerifiedPicture picture;
     VerifyScore score;
     std::uint32_t samples = 0;  ///< paths a pixel of the reference
     ReferenceTarget target;     ///< that the reference was meant to reach
 };
-
-/// Of a camera, with characters only that every file system takes.
-std::string fileNameOf(const Camera& camera);
 
 Table verdictTable();
 void addRow(Table& table, const CameraVerdict& verdict);

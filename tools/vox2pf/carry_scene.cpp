@@ -6,7 +6,8 @@
 
 #include <algorithm>
 
-#include "common/inputs.hpp"
+#include "common/paths.hpp"
+#include "common/text.hpp"
 #include "vox2pf/commands.hpp"
 
 namespace pfvox::tools {
@@ -14,26 +15,33 @@ namespace pfvox::tools {
 namespace fs = std::filesystem;
 
 bool isSceneName(const fs::path& file) {
-    const std::string name = file.filename().string();
+    const std::string name = lowerCase(file.filename().string());
     return name == "scene.toml" || name.ends_with(".scene.toml");
 }
 
 OutputsOfRun::OutputsOfRun(std::span<const AssetTask> tasks) {
     for (const AssetTask& task : tasks) {
         if (task.isScene) continue;
-        const fs::path output = canonicalName(task.output);
-        outputOf_.emplace(canonicalName(task.source), output);
-        outputs_.insert(output);
+        byPlace_.emplace(placeOf(task.source), Entry{task.source, task.output});
+        byCanonical_.emplace(canonicalName(task.source), Entry{task.source, task.output});
+        outputs_.insert({placeOf(task.output), canonicalName(task.output)});
     }
 }
 
 const fs::path* OutputsOfRun::outputOf(const fs::path& source) const {
-    const auto entry = outputOf_.find(canonicalName(source));
-    return entry == outputOf_.end() ? nullptr : &entry->second;
+    // Through a linked folder, ".." leads elsewhere than the text says.
+    const auto isMeant = [&](const Entry& entry) {
+        std::error_code error;
+        return !fs::exists(source, error) || fs::equivalent(source, entry.source, error);
+    };
+    if (const auto found = byPlace_.find(placeOf(source)); found != byPlace_.end() && isMeant(found->second))
+        return &found->second.output;
+    const auto found = byCanonical_.find(canonicalName(source));
+    return found == byCanonical_.end() ? nullptr : &found->second.output;
 }
 
 bool OutputsOfRun::writes(const fs::path& output) const {
-    return outputs_.contains(canonicalName(output));
+    return outputs_.contains(placeOf(output)) || outputs_.contains(canonicalName(output));
 }
 
 namespace {
@@ -56,11 +64,15 @@ class PathTurner {
         if (outputs_.writes(named)) return fromNewPlace(named);
         std::error_code error;
         if (!fs::exists(named, error)) {
+            const auto meant = nearlyNamed(named);
             diagnostics_.warn(
                 "scene-missing-model",
                 fmt::format("{}: {} does not exist, and nothing of this run becomes it; the path "
-                            "stays as it is",
-                            use.place, use.model.path));
+                            "stays as it is{}",
+                            use.place, use.model.path,
+                            meant ? fmt::format("; did you mean {}?",
+                                                meant->lexically_relative(from_).generic_string())
+                                  : ""));
             return std::nullopt;
         }
         if (path.extension() == kPfVoxExtension) {
@@ -79,9 +91,10 @@ class PathTurner {
 
   private:
     std::string fromNewPlace(const fs::path& file) const {
-        return canonicalName(file)
-            .lexically_relative(canonicalName(to_.empty() ? "." : to_))
-            .generic_string();
+        // Of a link among the outputs its own name, but folders as they are reached.
+        const fs::path folder = file.has_parent_path() ? file.parent_path() : ".";
+        const fs::path entry = canonicalName(folder) / file.filename();
+        return entry.lexically_relative(canonicalName(to_.empty() ? "." : to_)).generic_string();
     }
 
     fs::path from_;
@@ -100,8 +113,8 @@ Result<std::string> turnedText(const AssetTask& task, const OutputsOfRun& output
     DiagnosticList diagnostics;
     PathTurner turner(task, outputs, diagnostics);
     auto turned = withModelPaths(text, task.source, limits, diagnostics, std::ref(turner));
-    result.report.sourceBytes = bytes.size();
-    result.report.models = turner.models();
+    result.sourceBytes = bytes.size();
+    result.sceneModels = turner.models();
     result.diagnostics = diagnostics.entries();
     return turned;
 }
@@ -121,6 +134,7 @@ Result<void> carry(const AssetTask& task, const OutputsOfRun& outputs, const Con
                                    : "the scene or the paths of its models changed";
     if (same && (!policy.force || policy.ifChanged)) {
         result.outcome = Outcome::UpToDate;
+        result.outputBytes = bytes.size();
         refreshTimeStamp(task.output, policy);
         return {};
     }
@@ -134,7 +148,7 @@ Result<void> carry(const AssetTask& task, const OutputsOfRun& outputs, const Con
         return {};
     }
     PFVOX_CHECK(io::writeFileAtomically(task.output, bytes, {.replaceReadOnly = policy.force}));
-    result.report.outputBytes = bytes.size();
+    result.outputBytes = bytes.size();
     result.outcome = Outcome::Converted;
     return {};
 }

@@ -11,7 +11,7 @@
 
 namespace pfvox::tools {
 
-/// Whether a file of a folder is a scene, by its name: scene.toml or *.scene.toml.
+/// Whether a file of a folder is a scene, by its name: scene.toml or *.scene.toml, in any case.
 bool isSceneName(const std::filesystem::path& file);
 
 /// What every source of a run becomes.
@@ -25,7 +25,14 @@ class OutputsOfRun {
     bool writes(const std::filesystem::path& output) const;
 
   private:
-    std::map<std::filesystem::path, std::filesystem::path> outputOf_;  ///< by canonical name
+    struct Entry {
+        std::filesystem::path source;
+        std::filesystem::path output;
+    };
+    using Entries = std::map<std::filesystem::path, Entry>;
+
+    Entries byPlace_;      ///< of the source; of links to one file each has its own
+    Entries byCanonical_;  ///< for those who come another way
     std::set<std::filesystem::path> outputs_;
 };
 

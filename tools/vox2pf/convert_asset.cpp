@@ -18,18 +18,53 @@ namespace {
 /// The existing output, as far as the decision needs it.
 struct Existing {
     bool present = false;
-    bool upToDate = false;
+    bool damaged = false;
     std::string reason;
+    std::uint64_t bytes = 0;
+    std::optional<ConvertReport> counts = {};  ///< set exactly when it is up to date
 };
+
+/// Nothing for what can only be written to, as a pipe.
+std::optional<io::FileBytes> bytesOf(const fs::path& output, const Limits& limits) {
+    std::error_code error;
+    if (!fs::is_regular_file(output, error)) return std::nullopt;
+    auto contents = io::readFile(output, limits.maxFileBytes);
+    return contents ? std::optional(*std::move(contents)) : std::nullopt;
+}
+
+std::string damageText(const Error& error) {
+    return fmt::format("the existing output was damaged ({})", describe(error));
+}
+
+/// An output with the right key whose parts are not what their hashes say has changed on the disk.
+Existing inspectContent(std::span<const std::byte> bytes, const Limits& limits) {
+    DiagnosticList ignored;
+    const auto asset = decodePfVox(bytes, limits, ignored);
+    if (asset) {
+        return {.present = true,
+                .reason = "same source, settings and program as in the last conversion",
+                .bytes = bytes.size(),
+                .counts = countsOf(*asset)};
+    }
+    if (asset.error().code == ErrorCode::LimitExceeded)
+        return {.present = true, .reason = "the existing output cannot be checked within the limits"};
+    return {.present = true, .damaged = true, .reason = damageText(asset.error())};
+}
 
 Existing inspectOutput(const fs::path& output, const ContentKey& wanted, const Limits& limits) {
     std::error_code error;
     if (!fs::exists(output, error)) return {.reason = "there was no output"};
-    const auto contents = io::readFile(output, limits.maxFileBytes);
+    const auto contents = bytesOf(output, limits);
     if (!contents) return {.present = true, .reason = "the existing output cannot be read"};
     const auto header = readPfVoxHeader(contents->bytes());
-    if (!header)
-        return {.present = true, .reason = "the existing output is not a PF_VOX file of this version"};
+    if (!header) {
+        const ErrorCode code = header.error().code;
+        const bool damaged = code == ErrorCode::ChecksumMismatch || code == ErrorCode::BadStructure;
+        return {.present = true,
+                .damaged = damaged,
+                .reason = damaged ? damageText(header.error())
+                                  : "the existing output is not a PF_VOX file of this version"};
+    }
     if (header->fileBytes != contents->bytes().size()) {
         return {.present = true, .reason = "the existing output is not complete"};
     }
@@ -37,9 +72,7 @@ Existing inspectOutput(const fs::path& output, const ContentKey& wanted, const L
         return {.present = true,
                 .reason = "the source, the settings or the program changed since the last conversion"};
     }
-    return {.present = true,
-            .upToDate = true,
-            .reason = "same source, settings and program as in the last conversion"};
+    return inspectContent(contents->bytes(), limits);
 }
 
 /// Adds the time of its life to a number of seconds.
@@ -62,17 +95,21 @@ Result<void> convertAndWrite(const AssetTask& task, std::span<const std::byte> s
                              const ConvertPolicy& policy, const Limits& limits, AssetResultAndOutput& asset) {
     AssetResult& result = asset.result;
     DiagnosticList diagnostics;
-    auto bytes = convertBytes(source, task.source, task.settings, limits, diagnostics, result.report);
-    result.diagnostics = diagnostics.entries();
+    ConvertReport report;
+    auto bytes = convertBytes(source, task.source, task.settings, limits, diagnostics, report);
+    const auto found = diagnostics.entries();
+    result.diagnostics.insert(result.diagnostics.end(), found.begin(), found.end());
     if (!bytes) return tl::make_unexpected(std::move(bytes).error());
 
+    result.counts = result.conversion = report;
     PFVOX_CHECK(checkWarnings(result, policy));
+    result.outputBytes = bytes->size();
     if (policy.ifChanged && holdsBytes(task.output, *bytes, limits)) {
         result.outcome = Outcome::UpToDate;
         result.reason = "converted again; the bytes are the same";
         return {};
     }
-    const AddSeconds timer(result.report.writeSeconds);
+    const AddSeconds timer(result.conversion->writeSeconds);
     PFVOX_TRY(io::AtomicFile, file,
               io::AtomicFile::createWith(task.output, *bytes, {.replaceReadOnly = policy.force}));
     asset.output.emplace(std::move(file));
@@ -84,12 +121,14 @@ Result<void> decideAndConvert(const AssetTask& task, const ConvertPolicy& policy
                               AssetResultAndOutput& asset) {
     AssetResult& result = asset.result;
     PFVOX_TRY(const io::FileBytes, source, io::readFile(task.source, limits.maxFileBytes));
-    result.report.sourceBytes = source.bytes().size();
+    result.sourceBytes = source.bytes().size();
     const Existing existing = inspectOutput(task.output, contentKey(source.bytes(), task.settings), limits);
     result.reason = existing.present && policy.force ? "--force" : existing.reason;
 
-    if (existing.upToDate && !policy.force) {
+    if (existing.counts && !policy.force) {
         result.outcome = Outcome::UpToDate;
+        result.outputBytes = existing.bytes;
+        result.counts = existing.counts;
         refreshTimeStamp(task.output, policy);
         return {};
     }
@@ -102,12 +141,19 @@ Result<void> decideAndConvert(const AssetTask& task, const ConvertPolicy& policy
         result.outcome = Outcome::Planned;
         return {};
     }
+    if (existing.damaged) {
+        result.isRepair = true;
+        result.diagnostics.push_back({.severity = Severity::Note,
+                                      .id = "output-damaged",
+                                      .message = existing.reason + ": converted again"});
+    }
     return convertAndWrite(task, source.bytes(), policy, limits, asset);
 }
 
 void failWith(const AssetTask& task, Error error, AssetResult& result) {
     if (error.file.empty()) error.file = task.source;
     result.outcome = Outcome::Failed;
+    result.outputBytes.reset();
     result.error = std::move(error);
 }
 
@@ -139,7 +185,7 @@ Result<void> checkOutput(const AssetTask& task, const ConvertPolicy& policy) {
 }
 
 bool holdsBytes(const fs::path& output, std::span<const std::byte> bytes, const Limits& limits) {
-    const auto contents = io::readFile(output, limits.maxFileBytes);
+    const auto contents = bytesOf(output, limits);
     return contents && std::ranges::equal(contents->bytes(), bytes);
 }
 
@@ -177,7 +223,7 @@ AssetResultAndOutput beginAsset(const AssetTask& task, const ConvertPolicy& poli
 }
 
 void finishAsset(const AssetTask& task, io::AtomicFile output, AssetResult& result) {
-    const AddSeconds timer(result.report.writeSeconds);
+    const AddSeconds timer(result.conversion->writeSeconds);
     auto status = output.commit();
     if (!status) failWith(task, std::move(status).error(), result);
 }

@@ -1,7 +1,8 @@
 // Convert one asset: decides whether there is anything to do, does it, and says why.
 //
 // Up to date means content: the key in the header of the existing output against the key of the source bytes,
-// the settings and the program. Time stamps are never read.
+// the settings and the program; and the hashes of its parts against what it holds, so that damage is
+// repaired. Time stamps are never read.
 #pragma once
 
 #include <filesystem>
@@ -36,10 +37,16 @@ struct ConvertPolicy {
     bool warningsAsErrors = false;
 };
 
+/// What is not known, or has no meaning for the outcome, is nothing, and null in JSON.
 struct AssetResult {
     Outcome outcome = Outcome::NotStarted;
-    std::string reason;  ///< why it was converted or not, one clause
-    ConvertReport report;
+    std::string reason;     ///< why it was converted or not, one clause
+    bool isRepair = false;  ///< the output that is replaced was damaged
+    std::optional<std::uint64_t> sourceBytes;
+    std::optional<std::uint64_t> outputBytes;  ///< of what lies there now
+    std::optional<std::uint32_t> sceneModels;  ///< of a scene
+    std::optional<ConvertReport> counts;       ///< of an asset: of this, what its octrees tell
+    std::optional<ConvertReport> conversion;   ///< of an asset, where one was done
     std::vector<Diagnostic> diagnostics;
     std::optional<Error> error;  ///< set exactly when Failed
 };

@@ -1,11 +1,13 @@
 #include <fmt/format.h>
 
-#include <map>
 #include <memory>
 #include <pfvox/import.hpp>
+#include <set>
+#include <type_traits>
 
 #include "common/inputs.hpp"
 #include "common/output_paths.hpp"
+#include "common/paths.hpp"
 #include "vox2pf/commands.hpp"
 #include "vox2pf/convert_run.hpp"
 
@@ -29,13 +31,11 @@ HelpText helpText() {
 void addInputOutputOptions(CLI::App& command, ConvertOptions& options) {
     std::vector<std::string> suffixes{".toml"};
     for (const SourceFormat& format : sourceFormats()) suffixes.emplace_back(format.extension);
-    command.add_option("input", options.inputs)
-        ->required()
-        ->check(suggestFiles(suffixes))
-        ->group(group::kInputOutput);
+    addInputs(command, options.inputs, suffixes);
     command.add_option("-o,--output", options.output, "file (.pf_vox) for one input, else folder; required")
         ->option_text("PATH")
         ->required()
+        ->check(outputPath())
         ->check(suggestFiles({kPfVoxExtension}))
         ->group(group::kInputOutput);
     command
@@ -56,88 +56,88 @@ void addInputOutputOptions(CLI::App& command, ConvertOptions& options) {
         ->group(group::kInputOutput);
 }
 
-/// What decides how an asset is built and written.
-void addOctreeOptions(CLI::App& command, ConvertOptions& options) {
-    SettingsPatch& patch = options.patch;
-    const ConvertSettings byDefault;
-    addSwitch(command, "hollow", patch.hollow,
-              "let voxels that cannot be seen take another material (lossy inside)",
-              byDefault.hollow ? "--hollow" : "--no-hollow")
-        ->group(group::kConversion);
-    addSwitch(command, "lod", patch.lod, "add colors for level of detail, at about twice the size",
-              byDefault.build.lod ? "--lod" : "--no-lod")
-        ->group(group::kConversion);
-    command
-        .add_flag(
-            "--archive", options.archive,
-            fmt::format("compress harder: zstd {} instead of {}", kArchiveZstdLevel, byDefault.zstdLevel))
-        ->group(group::kConversion);
-    command
+// One option of the table for a field of each type; what it holds without the option is shown in help.
+
+CLI::Option* addSetting(CLI::App& command, const ConvertSetting& setting, bool& field, SettingsPatch& patch) {
+    return command
+        .add_flag_function(
+            fmt::format("--{0},!--no-{0}", setting.option),
+            [&, setting](std::int64_t count) { patch.give(setting.key, field, count > 0); },
+            std::string(setting.meaning))
+        ->check(showDefault(fmt::format("--{}{}", field ? "" : "no-", setting.option)));
+}
+
+template <class T>
+requires std::is_arithmetic_v<T> CLI::Option* addSetting(CLI::App& command, const ConvertSetting& setting,
+                                                         T& field, SettingsPatch& patch) {
+    return command
+        .add_option_function<T>(
+            fmt::format("--{}", setting.option),
+            [&, setting](const T& value) { patch.give(setting.key, field, value); },
+            std::string(setting.meaning))
+        ->check(showDefault(field))
+        ->check(numberFrom(setting.low, setting.high));
+}
+
+CLI::Option* addSetting(CLI::App& command, const ConvertSetting& setting, std::optional<double>& field,
+                        SettingsPatch& patch) {
+    return command
+        .add_option_function<double>(
+            fmt::format("--{}", setting.option),
+            [&, setting](double value) { patch.give(setting.key, field, std::optional(value)); },
+            std::string(setting.meaning))
+        ->check(showDefault(fmt::format("as in the source, else {}", kDefaultVoxelSizeMetres)))
+        ->check(numberFrom(setting.low, setting.high));
+}
+
+CLI::Option* addSetting(CLI::App& command, const ConvertSetting& setting, std::vector<std::string>& field,
+                        SettingsPatch& patch) {
+    return command.add_option_function<std::vector<std::string>>(
+        fmt::format("--{}", setting.option),
+        [&, setting](const std::vector<std::string>& names) { patch.give(setting.key, field, names); },
+        std::string(setting.meaning));
+}
+
+template <class Enum>
+requires std::is_enum_v<Enum> CLI::Option* addSetting(CLI::App& command, const ConvertSetting& setting,
+                                                      Enum& field, SettingsPatch& patch) {
+    const std::set<std::string> names(setting.choices.begin(), setting.choices.end());
+    return command
         .add_option_function<std::string>(
-            "--profile", [&patch](const std::string& name) { patch.profile = parseProfile(name); },
-            "packed: small; resident: raw words, nothing to decode")
-        ->option_text("NAME")
-        ->check(CLI::IsMember({"packed", "resident"}))
-        ->check(showDefault(byDefault.profile == Profile::Packed ? "packed" : "resident"))
-        ->group(group::kConversion);
+            fmt::format("--{}", setting.option),
+            [&, setting](const std::string& name) {
+                patch.give(setting.key, field, choiceOf<Enum>(setting, name).value_or(field));
+            },
+            std::string(setting.meaning))
+        ->check(CLI::IsMember(names))
+        ->check(showDefault(std::string(setting.choices[static_cast<std::size_t>(field)])));
 }
 
 void addConversionOptions(CLI::App& command, ConvertOptions& options) {
-    SettingsPatch& patch = options.patch;
-    const ImportSettings byDefault;
-    const auto setTrue = [](std::optional<bool>& flag) { return [&flag](std::int64_t) { flag = true; }; };
     command
         .add_option("--settings", options.settingsFile,
                     "TOML file with [import], [build], [encode], [[override]]")
         ->option_text("FILE")
         ->check(suggestFiles({".toml"}))
         ->group(group::kConversion);
-    command.add_flag_function("--merge", setTrue(patch.merge), "flatten all instances into one model")
-        ->group(group::kConversion);
+    forEachConvertSetting(
+        [&](const ConvertSetting& setting, auto& field) {
+            CLI::Option* const option = addSetting(command, setting, field, options.patch);
+            if (!setting.value.empty()) option->option_text(std::string(setting.value));
+            option->group(group::kConversion);
+        },
+        options.patch.values);
     command
-        .add_flag_function("--include-hidden", setTrue(patch.includeHidden),
-                           "keep hidden layers and nodes, visible")
+        .add_flag("--archive", options.archive,
+                  fmt::format("compress harder: --zstd-level {}", kArchiveZstdLevel))
         ->group(group::kConversion);
-    command.add_option("--frame", patch.frame, "animation frame, 0 or more")
-        ->option_text("N")
-        ->check(showDefault(byDefault.frame))
-        ->check(numberFrom(0, kMaxFrame))
-        ->group(group::kConversion);
-    command.add_option("--voxel-size", patch.voxelSizeMetres, "edge of a voxel, 1e-6 to 1e6")
-        ->option_text("METERS")
-        ->check(showDefault(fmt::format("as in the source, else {}", kDefaultVoxelSizeMetres)))
-        ->check(numberFrom(kMinVoxelSizeMetres, kMaxVoxelSizeMetres))
-        ->group(group::kConversion);
-    command
-        .add_option("--svx-threshold", patch.svxThreshold,
-                    "SVX: density of a solid voxel, 0 to 1 of the largest")
-        ->option_text("FRACTION")
-        ->check(showDefault(byDefault.svx.threshold))
-        ->check(numberFrom(0.0, 1.0))
-        ->group(group::kConversion);
-    command
-        .add_option("--vdb-grid", patch.vdbGrids,
-                    "OpenVDB: import this grid and no others but those named so; may be given again")
-        ->option_text("NAME")
-        ->group(group::kConversion);
-    command
-        .add_option("--vdb-threshold", patch.vdbThreshold, "OpenVDB fog: a voxel is solid above this value")
-        ->option_text("VALUE")
-        ->check(showDefault(byDefault.vdb.threshold))
-        ->check(numberFrom(-kMaxVdbThreshold, kMaxVdbThreshold))
-        ->group(group::kConversion);
-    command.add_option("--vdb-up", patch.vdbUpAxis, "OpenVDB: which axis points up, y or z")
-        ->option_text("AXIS")
-        ->check(showDefault(byDefault.vdb.upAxis == UpAxis::Y ? "y" : "z"))
-        ->transform(CLI::Transformer(std::map<std::string, UpAxis>{{"y", UpAxis::Y}, {"z", UpAxis::Z}}))
-        ->group(group::kConversion);
-    addOctreeOptions(command, options);
 }
 
 void addBuildOptions(CLI::App& command, ConvertOptions& options) {
     command
         .add_option("--depfile", options.depfile, "write what each output was made from, for make and ninja")
         ->option_text("FILE")
+        ->check(outputPath())
         ->check(suggestFiles({".d"}))
         ->group(group::kBuild);
     command
@@ -164,14 +164,9 @@ InputQuery inputQuery(const ConvertOptions& options) {
 /// --base-dir: files that were named one by one keep their place below that folder. Gives what is wrong, if
 /// anything.
 std::string placeBelow(const std::filesystem::path& baseDir, std::vector<InputFile>& inputs) {
-    // Links are not followed: an asset that is a link has the place of the link.
-    const auto named = [](const std::filesystem::path& path) {
-        const auto name = std::filesystem::absolute(path).lexically_normal();
-        return name.has_filename() ? name : name.parent_path();
-    };
     for (InputFile& input : inputs) {
         if (input.fromFolder) continue;
-        const auto relative = named(input.file).lexically_relative(named(baseDir));
+        const auto relative = placeOf(input.file).lexically_relative(placeOf(baseDir));
         if (relative.empty() || relative == "." || *relative.begin() == "..")
             return input.file.string() + " is not below --base-dir " + baseDir.string();
         input.relative = relative;
@@ -182,13 +177,13 @@ std::string placeBelow(const std::filesystem::path& baseDir, std::vector<InputFi
 /// Scenes are carried over under their own name. In folders the name tells them from settings files; what is
 /// named on the command line is a scene by its extension.
 bool isScene(const InputFile& input) {
-    return input.fromFolder ? isSceneName(input.file) : input.file.extension() == ".toml";
+    return input.fromFolder ? isSceneName(input.file) : hasExtension(input.file, ".toml");
 }
 
 std::vector<AssetTask> makeTasks(const std::vector<InputOutput>& pairs, const SettingsFile& settings,
                                  const ConvertOptions& options) {
     SettingsPatch commandLine = options.patch;
-    if (options.archive) commandLine.zstdLevel = kArchiveZstdLevel;
+    if (options.archive) commandLine.give("zstdLevel", commandLine.values.zstdLevel, kArchiveZstdLevel);
     std::vector<AssetTask> tasks;
     for (const InputOutput& pair : pairs) {
         tasks.push_back({.source = pair.input.file,
@@ -198,6 +193,16 @@ std::vector<AssetTask> makeTasks(const std::vector<InputOutput>& pairs, const Se
                          .fault = pair.input.fault});
     }
     return tasks;
+}
+
+/// A pattern that nothing fits, and something would in other letters, is a mistake.
+void warnAboutPatterns(const SettingsFile& settings, const std::vector<InputOutput>& pairs,
+                       const std::string& settingsFile, Reporter& reporter) {
+    std::vector<std::filesystem::path> inputs;
+    for (const InputOutput& pair : pairs) inputs.push_back(pair.input.relative);
+    DiagnosticList diagnostics;
+    settings.reportNearMisses(inputs, diagnostics);
+    reporter.diagnostics(settingsFile, diagnostics.entries());
 }
 
 ExitCode runConvert(const CLI::App& command, const ConvertOptions& options) {
@@ -226,6 +231,7 @@ ExitCode runConvert(const CLI::App& command, const ConvertOptions& options) {
     if (!pairs) return usageError(command, pairs.error());
     if (pairs->empty())
         return stopWith(fail(ErrorCode::NothingToConvert, "no input but outputs of this tool").value());
+    warnAboutPatterns(*settings, *pairs, options.settingsFile, reporter);
     return ConvertRun(options, *limits, reporter).run(makeTasks(*pairs, *settings, options));
 }
 

@@ -28,16 +28,17 @@ std::string_view words(Outcome outcome) {
     }
 }
 
-std::string contentText(const AssetTask& task, const ConvertReport& report) {
-    if (task.isScene)
-        return fmt::format("scene of {}, {}", plural(report.models, "model"),
-                           formatBytes(report.outputBytes));
+std::string contentText(const AssetResult& result) {
+    const std::uint64_t bytes = result.outputBytes.value_or(0);
+    if (result.sceneModels)
+        return fmt::format("scene of {}, {}", plural(*result.sceneModels, "model"), formatBytes(bytes));
+    const ConvertReport report = result.conversion.value_or(ConvertReport{});
     std::string text = fmt::format("{}, {}, {}", plural(report.models, "model"),
-                                   plural(report.voxels, "voxel"), formatBytes(report.outputBytes));
+                                   plural(report.voxels, "voxel"), formatBytes(bytes));
     if (report.hollowedVoxels > 0) text += fmt::format(", {} hollowed", formatCount(report.hollowedVoxels));
     if (report.voxels > 0) {
         text += fmt::format(" ({:.3f} bytes/voxel)",
-                            static_cast<double>(report.outputBytes) / static_cast<double>(report.voxels));
+                            static_cast<double>(bytes) / static_cast<double>(report.voxels));
     }
     return text;
 }
@@ -52,9 +53,9 @@ struct Totals {
     void add(const AssetResult& result) {
         ++files;
         warnings += Reporter::warningCount(result.diagnostics);
-        sourceBytes += result.report.sourceBytes;
-        outputBytes += result.report.outputBytes;
-        voxels += result.report.voxels;
+        sourceBytes += result.sourceBytes.value_or(0);
+        outputBytes += result.outputBytes.value_or(0);
+        if (result.conversion) voxels += result.conversion->voxels;
     }
 };
 
@@ -73,32 +74,37 @@ std::string closingLine(const Totals& converted, std::size_t warnings, double se
 std::string assetLine(const AssetTask& task, const AssetResult& result, bool explain) {
     std::string text = fmt::format("{} {} -> {}", words(result.outcome), escaped(task.source.string()),
                                    escaped(task.output.string()));
-    if (result.outcome == Outcome::Converted) text += ": " + contentText(task, result.report);
-    if (explain && !result.reason.empty()) text += fmt::format("; {}", result.reason);
+    if (result.outcome == Outcome::Converted) text += ": " + contentText(result);
+    if ((explain || result.isRepair) && !result.reason.empty())
+        text += fmt::format("; {}", escaped(result.reason));
     return text;
 }
 
 Json assetJson(const AssetTask& task, const AssetResult& result) {
-    const ConvertReport& report = result.report;
+    const auto orNull = [](const auto& known) { return known ? Json(*known) : Json(nullptr); };
+    const auto of = [](const std::optional<ConvertReport>& report, auto field) {
+        return report ? Json((*report).*field) : Json(nullptr);
+    };
+    using Report = ConvertReport;
     Json json;
     json["kind"] = task.isScene ? "scene" : "asset";
     json["source"] = task.source.string();
     json["output"] = task.output.string();
     json["status"] = toString(result.outcome);
     json["reason"] = result.reason;
-    json["sourceBytes"] = report.sourceBytes;
-    json["outputBytes"] = report.outputBytes;
-    json["models"] = report.models;
-    json["instances"] = report.instances;
-    json["materials"] = report.materials;
-    json["voxels"] = report.voxels;
-    json["hollowedVoxels"] = report.hollowedVoxels;
-    json["nodes"] = report.nodes;
-    json["leaves"] = report.leaves;
-    json["seconds"] = {{"import", report.importSeconds},
-                       {"build", report.buildSeconds},
-                       {"encode", report.encodeSeconds},
-                       {"write", report.writeSeconds}};
+    json["sourceBytes"] = orNull(result.sourceBytes);
+    json["outputBytes"] = orNull(result.outputBytes);
+    json["models"] = task.isScene ? orNull(result.sceneModels) : of(result.counts, &Report::models);
+    json["instances"] = of(result.counts, &Report::instances);
+    json["materials"] = of(result.counts, &Report::materials);
+    json["voxels"] = of(result.counts, &Report::voxels);
+    json["hollowedVoxels"] = of(result.conversion, &Report::hollowedVoxels);
+    json["nodes"] = of(result.counts, &Report::nodes);
+    json["leaves"] = of(result.counts, &Report::leaves);
+    json["seconds"] = {{"import", of(result.conversion, &Report::importSeconds)},
+                       {"build", of(result.conversion, &Report::buildSeconds)},
+                       {"encode", of(result.conversion, &Report::encodeSeconds)},
+                       {"write", of(result.conversion, &Report::writeSeconds)}};
     json["diagnostics"] = toJson(result.diagnostics);
     json["error"] = result.error ? toJson(*result.error) : Json(nullptr);
     return json;

@@ -17,7 +17,10 @@ ExitCode ConvertRun::run(std::vector<AssetTask> tasks) {
              {.work = [&](std::size_t i) { return work(i); },
               .commit = [&](std::size_t i) { return commit(i); },
               .finished = [&](std::size_t i) { report(i); },
-              .progressed = [&](std::size_t i) { progress.advance(results_[i].report.voxels); }});
+              .progressed =
+                  [&](std::size_t i) {
+                      progress.advance(results_[i].conversion ? results_[i].conversion->voxels : 0);
+                  }});
     reporter_.clearProgress();
     reportUnstarted();
     const bool depfileGood = writeDependencies();

@@ -16,7 +16,7 @@ namespace pfvox::tools {
 
 struct ConvertOptions {
     CommonOptions common;
-    std::vector<std::string> inputs;
+    InputWords inputs;
     std::string output;
     std::string baseDir;
     std::string settingsFile;

@@ -1,11 +1,15 @@
 #include <fmt/format.h>
 
+#include <map>
 #include <memory>
 #include <pfvox/export.hpp>
 #include <pfvox/files.hpp>
 #include <pfvox/pf_vox.hpp>
-#include <set>
 
+#include "common/file_visit.hpp"
+#include "common/json.hpp"
+#include "common/output_paths.hpp"
+#include "common/paths.hpp"
 #include "common/text.hpp"
 #include "vox2pf/commands.hpp"
 #include "vox2pf/pf_vox_inputs.hpp"
@@ -35,10 +39,10 @@ HelpText helpText() {
             "Writes PF_VOX files back as MagicaVoxel or OpenVDB files, for round trips and for editing.",
         .usage = {"vox2pf export [options] <file.pf_vox | folder | @list | ->... -o <file.vox | file.vdb | "
                   "folder>"},
-        .examples = {{"vox2pf export hall.pf_vox -o hall.vox", "one file"},
-                     {"vox2pf export hall.pf_vox -o hall.vdb", "as OpenVDB grids: density, Cd and material"},
-                     {"vox2pf export build/assets --format vdb -o back",
-                      "every PF_VOX file of a folder, into one folder"}}};
+        .examples = {
+            {"vox2pf export hall.pf_vox -o hall.vox", "one file"},
+            {"vox2pf export hall.pf_vox -o hall.vdb", "as OpenVDB grids: density, Cd and material"},
+            {"vox2pf export build/assets --format vdb -o back", "a folder with its subfolders, mirrored"}}};
 }
 
 /// Whether a path that is to be a folder was rather meant as a file of a kind that nobody writes.
@@ -47,7 +51,8 @@ bool looksLikeOtherFile(const ExportOptions& options) {
     std::error_code error;
     const fs::path output = options.output;
     if (fs::exists(output, error)) return !fs::is_directory(output, error);
-    const bool oneFile = options.inputs.size() == 1 && !fs::is_directory(options.inputs.front(), error);
+    const std::vector<std::string>& words = options.inputs.words;
+    const bool oneFile = words.size() == 1 && !fs::is_directory(words.front(), error);
     return oneFile && output.has_filename() && output.has_extension();
 }
 
@@ -55,7 +60,7 @@ bool looksLikeOtherFile(const ExportOptions& options) {
 /// names. What is wrong, when name and format contradict each other.
 tl::expected<Target, std::string> targetOf(const ExportOptions& options) {
     Target target{.output = options.output, .format = options.format};
-    const std::string extension = target.output.extension().string();
+    const std::string extension = lowerCase(target.output.extension().string());
     target.isFile = extension == ".vox" || extension == ".vdb";
     if (!target.isFile && looksLikeOtherFile(options)) {
         return tl::make_unexpected(fmt::format(
@@ -71,22 +76,56 @@ tl::expected<Target, std::string> targetOf(const ExportOptions& options) {
     return target;
 }
 
-std::filesystem::path outputFor(const std::filesystem::path& source, const Target& target) {
-    if (target.isFile) return target.output;
-    return (target.output / source.filename()).replace_extension(target.format);
+using Outputs = std::map<std::filesystem::path, std::filesystem::path>;
+
+/// Decides where every input goes, and finds what stands in the way of each, before the first is written.
+std::string planOutputs(std::vector<InputFile>& inputs, const Target& target, Outputs& outputs) {
+    auto pairs = pairOutputs(std::move(inputs), target.output, "." + target.format);
+    inputs.clear();
+    if (!pairs) return pairs.error();
+    for (InputOutput& pair : *pairs) {
+        if (auto status = io::checkReplaceable(pair.output); !status && !pair.input.fault)
+            pair.input.fault = std::move(status).error();
+        outputs.emplace(pair.input.file, pair.output);
+        inputs.push_back(std::move(pair.input));
+    }
+    return {};
 }
 
-Result<std::uint64_t> exportFile(const std::filesystem::path& source, const Target& target,
+Result<std::uint64_t> exportFile(const std::filesystem::path& source, const std::filesystem::path& output,
                                  const Limits& limits, Diagnostics& diagnostics) {
     PFVOX_TRY(const OctreeAsset, asset, loadPfVox(source, limits, diagnostics));
     auto bytes =
-        target.format == kVdb ? exportVdb(asset, limits, diagnostics) : exportVox(asset, diagnostics);
+        hasExtension(output, ".vdb") ? exportVdb(asset, limits, diagnostics) : exportVox(asset, diagnostics);
     if (!bytes) {
         bytes.error().file = source;
         return tl::make_unexpected(std::move(bytes).error());
     }
-    PFVOX_CHECK(io::writeFileAtomically(outputFor(source, target), *bytes));
+    PFVOX_CHECK(io::writeFileAtomically(output, *bytes));
     return bytes->size();
+}
+
+ExitCode runExport(const CLI::App& command, const ExportOptions& options) {
+    const auto target = targetOf(options);
+    if (!target) return usageError(command, target.error());
+    Outputs outputs;
+    const auto plan = [&](std::vector<InputFile>& inputs) { return planOutputs(inputs, *target, outputs); };
+    const auto visit = [&](const std::filesystem::path& file, const Limits& limits,
+                           Reporter& reporter) -> std::optional<ErrorCode> {
+        const std::filesystem::path& output = outputs.at(file);
+        DiagnosticList diagnostics;
+        const auto bytes = exportFile(file, output, limits, diagnostics);
+        reporter.diagnostics(file, diagnostics.entries());
+        if (!bytes) return reportFailure(reporter, file, withRemedy(bytes.error()));
+        if (options.common.json) {
+            reporter.jsonLine(jsonText(
+                Json{{"file", file.string()}, {"output", output.string()}, {"outputBytes", *bytes}}));
+        }
+        reporter.result(fmt::format("{} -> {}: {}\n", escaped(file.string()), escaped(output.string()),
+                                    formatBytes(*bytes)));
+        return std::nullopt;
+    };
+    return visitFiles(command, options, kPfVoxExtension, visit, plan);
 }
 
 }  // namespace
@@ -98,6 +137,7 @@ Command makeExportCommand(CLI::App& tool) {
     command.add_option("-o,--output", options->output, "the .vox or .vdb file, or a folder for several")
         ->option_text("PATH")
         ->required()
+        ->check(outputPath())
         ->check(suggestFiles({".vox", ".vdb"}))
         ->group(group::kInputOutput);
     command.add_option("--format", options->format, "vox or vdb")
@@ -106,34 +146,7 @@ Command makeExportCommand(CLI::App& tool) {
         ->check(CLI::IsMember({kVox, kVdb}))
         ->group(group::kInputOutput);
 
-    const auto run = [&command, options] {
-        const auto target = targetOf(*options);
-        if (!target) return usageError(command, target.error());
-        std::set<std::filesystem::path> written;
-        const auto visit = [&](const std::filesystem::path& file, const Limits& limits,
-                               Reporter& reporter) -> std::optional<ErrorCode> {
-            const std::filesystem::path output = outputFor(file, *target);
-            DiagnosticList diagnostics;
-            auto bytes = written.insert(output).second
-                             ? exportFile(file, *target, limits, diagnostics)
-                             : Result<std::uint64_t>(tl::make_unexpected(Error{
-                                   .code = ErrorCode::FileNotWritable,
-                                   .message = fmt::format("{} was just written from another input; export "
-                                                          "it to another folder",
-                                                          output.string()),
-                                   .file = file}));
-            reporter.diagnostics(file, diagnostics.entries());
-            if (!bytes) {
-                reporter.error(withRemedy(bytes.error()));
-                return bytes.error().code;
-            }
-            reporter.result(fmt::format("{} -> {}: {}\n", escaped(file.string()), escaped(output.string()),
-                                        formatBytes(*bytes)));
-            return std::nullopt;
-        };
-        return visitPfVoxFiles(command, *options, visit);
-    };
-    return {.app = &command, .run = run};
+    return {.app = &command, .run = [&command, options] { return runExport(command, *options); }};
 }
 
 }  // namespace pfvox::tools

@@ -1,6 +1,7 @@
 #include <memory>
 #include <pfvox/files.hpp>
 
+#include "common/file_visit.hpp"
 #include "vox2pf/commands.hpp"
 #include "vox2pf/info_report.hpp"
 #include "vox2pf/pf_vox_inputs.hpp"
@@ -46,8 +47,9 @@ Command makeInfoCommand(CLI::App& tool) {
         first = false;
         return std::nullopt;
     };
-    return {.app = &command,
-            .run = [&command, options, visit] { return visitPfVoxFiles(command, *options, visit); }};
+    return {.app = &command, .run = [&command, options, visit] {
+                return visitFiles(command, *options, kPfVoxExtension, visit);
+            }};
 }
 
 }  // namespace pfvox::tools

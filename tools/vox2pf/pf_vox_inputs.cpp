@@ -6,10 +6,6 @@
 
 namespace pfvox::tools {
 
-ExitCode visitPfVoxFiles(const CLI::App& command, const ReadOptions& options, const FileVisitor& visit) {
-    return visitFiles(command, options, kPfVoxExtension, visit);
-}
-
 Error withRemedy(Error error) {
     if (error.code != ErrorCode::BadMagic) return error;
     if (error.file.extension() == kPfVoxExtension) {

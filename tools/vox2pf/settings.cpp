@@ -4,6 +4,7 @@
 #include <toml++/toml.h>
 #include <pfvox/files.hpp>
 
+#include <algorithm>
 #include <array>
 
 #include "common/text.hpp"
@@ -16,32 +17,14 @@ namespace {
 constexpr std::uint64_t kMaxSettingsBytes = 1 << 20;
 constexpr std::size_t kMaxPatternBytes = 4096;
 
-template <class T>
-void assignIfSet(T& field, const auto& given) {
-    if (given) field = *given;
-}
-
 }  // namespace
 
 void SettingsPatch::applyTo(ConvertSettings& settings) const {
-    assignIfSet(settings.import.merge, merge);
-    assignIfSet(settings.import.includeHidden, includeHidden);
-    assignIfSet(settings.import.frame, frame);
-    assignIfSet(settings.import.voxelSizeMetres, voxelSizeMetres);
-    assignIfSet(settings.import.svx.threshold, svxThreshold);
-    assignIfSet(settings.import.vdb.grids, vdbGrids);
-    assignIfSet(settings.import.vdb.threshold, vdbThreshold);
-    assignIfSet(settings.import.vdb.upAxis, vdbUpAxis);
-    assignIfSet(settings.hollow, hollow);
-    assignIfSet(settings.build.lod, lod);
-    assignIfSet(settings.zstdLevel, zstdLevel);
-    assignIfSet(settings.profile, profile);
-}
-
-std::optional<Profile> parseProfile(std::string_view name) {
-    if (name == "packed") return Profile::Packed;
-    if (name == "resident") return Profile::Resident;
-    return std::nullopt;
+    forEachConvertSetting(
+        [&](const ConvertSetting& setting, auto& to, const auto& from) {
+            if (given_.contains(setting.key)) to = from;
+        },
+        settings, values);
 }
 
 ConvertSettings SettingsFile::settingsFor(const std::filesystem::path& relative,
@@ -53,6 +36,26 @@ ConvertSettings SettingsFile::settingsFor(const std::filesystem::path& relative,
     }
     commandLine.applyTo(settings);
     return settings;
+}
+
+void SettingsFile::reportNearMisses(const std::vector<std::filesystem::path>& relative,
+                                    Diagnostics& diagnostics) const {
+    for (const Override& entry : overrides_) {
+        const auto fits = [&](const std::filesystem::path& path) {
+            return globMatches(entry.files, path.generic_string());
+        };
+        const auto nearlyFits = [&](const std::filesystem::path& path) {
+            return globMatches(lowerCase(entry.files), lowerCase(path.generic_string()));
+        };
+        if (std::ranges::any_of(relative, fits)) continue;
+        const auto meant = std::ranges::find_if(relative, nearlyFits);
+        if (meant == relative.end()) continue;
+        diagnostics.warn(
+            "override-case",
+            fmt::format("the pattern \"{}\" of an [[override]] fits no input, but would fit {} in "
+                        "other case: upper and lower case are different letters in paths",
+                        entry.files, meant->generic_string()));
+    }
 }
 
 /// Turns a TOML document into a SettingsFile; every complaint has its line and column.
@@ -105,15 +108,11 @@ class SettingsReader {
         SettingsFile::Override entry;
         for (const auto& [key, node] : table) {
             if (key == "files") {
-                entry.files = node.value_or(std::string());
+                PFVOX_TRY(std::string, pattern, patternOf(node));
+                entry.files = std::move(pattern);
             } else {
                 PFVOX_CHECK(readSection(key, node, entry.patch, {"files"}));
             }
-        }
-        if (entry.files.size() > kMaxPatternBytes) {
-            return failAtRegion(
-                ErrorCode::BadValue, table.source(),
-                fmt::format("a pattern of {} bytes is longer than any path", entry.files.size()));
         }
         if (entry.files.empty()) {
             return failAtRegion(ErrorCode::BadValue, table.source(),
@@ -123,103 +122,97 @@ class SettingsReader {
         return {};
     }
 
-    /// One of [import], [build], [encode]. `others`: further names that could have been meant.
+    /// With '/' between folders, however they were written.
+    Result<std::string> patternOf(const toml::node& node) const {
+        std::string pattern = node.value_or(std::string());
+        if (pattern.empty())
+            return failAtRegion(ErrorCode::BadValue, node.source(),
+                                "files is a pattern, such as \"props/**\"");
+        if (pattern.size() > kMaxPatternBytes) {
+            return failAtRegion(ErrorCode::BadValue, node.source(),
+                                fmt::format("a pattern of {} bytes is longer than any path", pattern.size()));
+        }
+        if (const auto path = io::pathFromText(pattern); !path)
+            return failAtRegion(ErrorCode::BadValue, node.source(), path.error().message);
+        std::ranges::replace(pattern, '\\', '/');
+        return pattern;
+    }
+
+    /// One of the sections that the table of settings has. `others`: further names that could have been
+    /// meant.
     Result<void> readSection(const toml::key& name, const toml::node& node, SettingsPatch& patch,
                              Names others) {
-        if (name != "import" && name != "build" && name != "encode") {
-            others.insert(others.end(), {"import", "build", "encode"});
-            return unknown(name, "section", others);
-        }
+        Names keys;
+        forEachConvertSetting(
+            [&](const ConvertSetting& setting, const auto&) {
+                if (setting.section == name.str()) keys.emplace_back(setting.key);
+                if (std::ranges::find(others, setting.section) == others.end())
+                    others.emplace_back(setting.section);
+            },
+            patch.values);
+        if (keys.empty()) return unknown(name, "section", others);
         const toml::table* table = node.as_table();
         if (table == nullptr) {
             return failAtRegion(ErrorCode::BadValue, node.source(),
                                 fmt::format("{} is a section", name.str()));
         }
         for (const auto& [key, value] : *table) {
-            PFVOX_CHECK(name == "import"  ? readImportKey(key, value, patch)
-                        : name == "build" ? readBuildKey(key, value, patch)
-                                          : readEncodeKey(key, value, patch));
+            if (std::ranges::find(keys, key.str()) == keys.end()) return unknown(key, "key", keys);
+            Result<void> read;
+            forEachConvertSetting(
+                [&](const ConvertSetting& setting, auto& field) {
+                    if (setting.key != key.str()) return;
+                    auto given = valueOf(setting, field, value);
+                    if (given) {
+                        patch.give(setting.key, field, std::decay_t<decltype(field)>(*std::move(given)));
+                    } else {
+                        read = failAtRegion(ErrorCode::BadValue, value.source(),
+                                            fmt::format("{} is {}", setting.key, given.error()));
+                    }
+                },
+                patch.values);
+            PFVOX_CHECK(read);
         }
         return {};
     }
 
-    Result<void> readImportKey(const toml::key& key, const toml::node& value, SettingsPatch& patch) {
-        if (key == "merge") return readFlag(key, value, patch.merge);
-        if (key == "includeHidden") return readFlag(key, value, patch.includeHidden);
-        if (key == "frame") return readNumber(key, value, patch.frame, 0, kMaxFrame);
-        if (key == "voxelSizeMetres") {
-            return readNumber(key, value, patch.voxelSizeMetres, kMinVoxelSizeMetres, kMaxVoxelSizeMetres);
-        }
-        if (key == "svxThreshold") return readNumber(key, value, patch.svxThreshold, 0.0, 1.0);
-        if (key == "vdbThreshold") {
-            return readNumber(key, value, patch.vdbThreshold, -kMaxVdbThreshold, kMaxVdbThreshold);
-        }
-        if (key == "vdbGrids") return readNames(key, value, patch.vdbGrids);
-        if (key == "vdbUp") return readUpAxis(key, value, patch.vdbUpAxis);
-        return unknown(key, "key",
-                       {"merge", "includeHidden", "frame", "voxelSizeMetres", "svxThreshold", "vdbGrids",
-                        "vdbThreshold", "vdbUp"});
-    }
-
-    Result<void> readNames(const toml::key& key, const toml::node& node,
-                           std::optional<std::vector<std::string>>& field) {
-        const toml::array* names = node.as_array();
-        if (names == nullptr || !names->is_homogeneous(toml::node_type::string)) {
-            return failAtRegion(ErrorCode::BadValue, node.source(),
-                                fmt::format("{} is a list of names", key.str()));
-        }
-        field.emplace();
-        for (const toml::node& name : *names) field->push_back(name.value_or(std::string()));
-        return {};
-    }
-
-    Result<void> readUpAxis(const toml::key& key, const toml::node& node, std::optional<UpAxis>& field) {
-        const std::string axis = node.value_or(std::string());
-        if (axis != "y" && axis != "z") {
-            return failAtRegion(ErrorCode::BadValue, node.source(),
-                                fmt::format("{} is \"y\" or \"z\"", key.str()));
-        }
-        field = axis == "z" ? UpAxis::Z : UpAxis::Y;
-        return {};
-    }
-
-    Result<void> readBuildKey(const toml::key& key, const toml::node& value, SettingsPatch& patch) {
-        if (key == "hollow") return readFlag(key, value, patch.hollow);
-        if (key == "lod") return readFlag(key, value, patch.lod);
-        return unknown(key, "key", {"hollow", "lod"});
-    }
-
-    Result<void> readEncodeKey(const toml::key& key, const toml::node& value, SettingsPatch& patch) {
-        if (key == "zstdLevel") return readNumber(key, value, patch.zstdLevel, 1, kMaxZstdLevel);
-        if (key == "profile") return readProfile(key, value, patch.profile);
-        return unknown(key, "key", {"zstdLevel", "profile"});
-    }
-
-    Result<void> readProfile(const toml::key& key, const toml::node& node, std::optional<Profile>& field) {
-        field = parseProfile(node.value_or(std::string_view()));
-        if (field) return {};
-        return failAtRegion(ErrorCode::BadValue, node.source(),
-                            fmt::format("{} is \"packed\" or \"resident\"", key.str()));
-    }
-
-    Result<void> readFlag(const toml::key& key, const toml::node& node, std::optional<bool>& field) {
-        field = node.value_exact<bool>();
-        if (field) return {};
-        return failAtRegion(ErrorCode::BadValue, node.source(),
-                            fmt::format("{} is true or false", key.str()));
-    }
+    // What a node says for a field of this type, or what it should have been.
 
     template <class T>
-    Result<void> readNumber(const toml::key& key, const toml::node& node, std::optional<T>& field, T low,
-                            T high) {
+    using Given = tl::expected<T, std::string>;
+
+    static Given<bool> valueOf(const ConvertSetting&, bool, const toml::node& node) {
+        const std::optional<bool> value = node.value_exact<bool>();
+        return value ? Given<bool>(*value) : tl::make_unexpected("true or false");
+    }
+    template <class T>
+    requires std::is_arithmetic_v<T>
+    static Given<T> valueOf(const ConvertSetting& setting, T, const toml::node& node) {
         const std::optional<T> value = node.is_number() ? node.value<T>() : std::nullopt;
-        if (!value || !(*value >= low && *value <= high)) {
-            return failAtRegion(ErrorCode::BadValue, node.source(),
-                                fmt::format("{} is a {}number from {} to {}", key.str(),
-                                            std::is_integral_v<T> ? "whole " : "", low, high));
-        }
-        field = value;
-        return {};
+        if (value && static_cast<double>(*value) >= setting.low &&
+            static_cast<double>(*value) <= setting.high)
+            return *value;
+        return tl::make_unexpected(fmt::format(
+            "a {}number from {} to {}", std::is_integral_v<T> ? "whole " : "", setting.low, setting.high));
+    }
+    static Given<double> valueOf(const ConvertSetting& setting, const std::optional<double>&,
+                                 const toml::node& node) {
+        return valueOf(setting, 0.0, node);
+    }
+    static Given<Names> valueOf(const ConvertSetting&, const Names&, const toml::node& node) {
+        const toml::array* names = node.as_array();
+        if (names == nullptr || !names->is_homogeneous(toml::node_type::string))
+            return tl::make_unexpected("a list of names");
+        Names given;
+        for (const toml::node& name : *names) given.push_back(name.value_or(std::string()));
+        return given;
+    }
+    template <class Enum>
+    requires std::is_enum_v<Enum>
+    static Given<Enum> valueOf(const ConvertSetting& setting, Enum, const toml::node& node) {
+        const auto value = choiceOf<Enum>(setting, node.value_or(std::string_view()));
+        if (value) return *value;
+        return tl::make_unexpected(fmt::format("\"{}\"", fmt::join(setting.choices, "\" or \"")));
     }
 
     const std::filesystem::path& file_;

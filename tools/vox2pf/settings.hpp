@@ -12,9 +12,11 @@
 //     name import.merge = true
 #pragma once
 
+#include <algorithm>
 #include <filesystem>
 #include <optional>
 #include <pfvox/convert.hpp>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,33 +24,31 @@
 namespace pfvox::tools {
 
 /// Settings that were given; the others are left as they are.
-struct SettingsPatch {
-    std::optional<bool> merge;
-    std::optional<bool> includeHidden;
-    std::optional<int> frame;
-    std::optional<double> voxelSizeMetres;
-    std::optional<double> svxThreshold;
-    std::optional<std::vector<std::string>> vdbGrids;
-    std::optional<double> vdbThreshold;
-    std::optional<UpAxis> vdbUpAxis;
-    std::optional<bool> hollow;
-    std::optional<bool> lod;
-    std::optional<int> zstdLevel;
-    std::optional<Profile> profile;
-
+class SettingsPatch {
+  public:
+    /// `field` is the one of `values` that has this key in the table.
+    template <class T>
+    void give(std::string_view key, T& field, T value) {
+        field = std::move(value);
+        given_.insert(key);
+    }
     void applyTo(ConvertSettings& settings) const;
+
+    ConvertSettings values;
+
+  private:
+    std::set<std::string_view> given_;  ///< keys: no two sections have the same
 };
 
-/// What the fields may hold; the command line and the file share it.
-inline constexpr int kMaxFrame = 1'000'000;
-inline constexpr double kMinVoxelSizeMetres = 1e-6;
-inline constexpr double kMaxVoxelSizeMetres = 1e6;
-inline constexpr double kMaxVdbThreshold = 1e30;
-inline constexpr int kMaxZstdLevel = 19;
 inline constexpr int kArchiveZstdLevel = 9;
 
-/// "packed" or "resident".
-std::optional<Profile> parseProfile(std::string_view name);
+/// The value of that name, if there is one.
+template <class Enum>
+std::optional<Enum> choiceOf(const ConvertSetting& setting, std::string_view name) {
+    const auto found = std::ranges::find(setting.choices, name);
+    if (found == setting.choices.end()) return std::nullopt;
+    return static_cast<Enum>(found - setting.choices.begin());
+}
 
 class SettingsFile {
   public:
@@ -62,6 +62,9 @@ class SettingsFile {
     /// The settings of one asset. `relative`: its path below the input folder, or its file name.
     ConvertSettings settingsFor(const std::filesystem::path& relative,
                                 const SettingsPatch& commandLine) const;
+
+    /// Patterns that fit none of these paths, though they would in other case (override-case).
+    void reportNearMisses(const std::vector<std::filesystem::path>& relative, Diagnostics& diagnostics) const;
 
   private:
     struct Override {

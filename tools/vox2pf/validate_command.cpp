@@ -2,9 +2,9 @@
 #include <pfvox/files.hpp>
 #include <pfvox/pf_vox.hpp>
 
+#include "common/file_visit.hpp"
 #include "common/findings.hpp"
 #include "vox2pf/commands.hpp"
-#include "vox2pf/pf_vox_inputs.hpp"
 
 namespace pfvox::tools {
 
@@ -39,7 +39,7 @@ Command makeValidateCommand(CLI::App& tool) {
             anyFinding = anyFinding || !findings.empty();
             return std::nullopt;
         };
-        const ExitCode exitCode = visitPfVoxFiles(command, *options, visit);
+        const ExitCode exitCode = visitFiles(command, *options, kPfVoxExtension, visit);
         return anyFinding ? ExitCode::InvalidInput : exitCode;
     };
     return {.app = &command, .run = run};

@@ -6,7 +6,7 @@ namespace pfvox::viewer {
 
 Result<std::optional<ViewCamera>> chosenCamera(const CameraRequest& request,
                                                const std::filesystem::path& file, const Scene& scene) {
-    if (request.camera) return request.camera;
+    if (request.name.empty() && request.camera) return request.camera;
     if (request.name.empty()) {
         const bool isScene = file.extension() == ".toml";
         return isScene && !scene.cameras.empty() ? std::optional(viewCameraOf(scene.cameras.front()))
@@ -17,10 +17,13 @@ Result<std::optional<ViewCamera>> chosenCamera(const CameraRequest& request,
         if (camera.name == request.name) return std::optional(viewCameraOf(camera));
         if (!camera.name.empty()) names += fmt::format("{}'{}'", names.empty() ? "" : ", ", camera.name);
     }
+    if (request.camera) return request.camera;
     return tl::make_unexpected(
         Error{.code = ErrorCode::BadReference,
-              .message = fmt::format("there is no camera '{}'; {}", request.name,
-                                     names.empty() ? "no camera has a name" : "there is " + names),
+              .message = fmt::format(
+                  "there is no camera '{}'; {}{}", request.name,
+                  names.empty() ? "no camera has a name" : "there is " + names,
+                  request.name.find(',') == std::string::npos ? "" : "; a place is px,py,pz,tx,ty,tz[,fovY]"),
               .file = file});
 }
 

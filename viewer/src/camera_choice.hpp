@@ -11,8 +11,8 @@
 namespace pfvox::viewer {
 
 struct CameraRequest {
-    std::optional<ViewCamera> camera;
-    std::string name;  ///< of the scene or file; counts when there is no `camera`
+    std::optional<ViewCamera> camera;  ///< a place; counts where no camera has the name
+    std::string name;                  ///< of the scene or file; the text of a place, too, may be one
 };
 
 /// The camera that was asked for; a scene's first one when nothing was; nothing = frame everything. Errors:

@@ -78,12 +78,13 @@ void parseSize(const std::string& text, PictureSettings& picture) {
     picture.height = static_cast<std::uint32_t>((*numbers)[1]);
 }
 
-ViewCamera parseCamera(const std::string& text) {
+/// A place that is written in numbers. Nothing for any other text, which is a name.
+std::optional<ViewCamera> parseCamera(const std::string& text) {
     const auto numbers = numbersIn(text, ',');
-    if (!numbers || (numbers->size() != 6 && numbers->size() != 7)) {
-        throw CLI::ValidationError("--camera", fmt::format("'{}' is not px,py,pz,tx,ty,tz[,fovY]", text));
-    }
+    if (!numbers || numbers->size() == 1) return std::nullopt;
     const std::vector<double>& n = *numbers;
+    if (n.size() != 6 && n.size() != 7)
+        throw CLI::ValidationError("--camera", fmt::format("'{}' is not px,py,pz,tx,ty,tz[,fovY]", text));
     ViewCamera camera{.position = {n[0], n[1], n[2]}, .target = {n[3], n[4], n[5]}};
     if (n.size() == 7) camera.fovYDegrees = n[6];
     if (camera.position == camera.target)
@@ -177,6 +178,7 @@ void declare(CLI::App& app, Options& options, RawOptions& raw) {
         ->add_option("--screenshot", options.screenshot,
                      "Write a PNG and exit instead of opening a window; needs no window system")
         ->type_name("PNG")
+        ->check(tools::outputPath())
         ->check(tools::suggestFiles({".png"}));
     picture->add_option("--size", raw.size, "Pixels")
         ->type_name("WxH")
@@ -184,7 +186,7 @@ void declare(CLI::App& app, Options& options, RawOptions& raw) {
                                                options.picture.height)));
     picture
         ->add_option("--camera", raw.camera,
-                     "Name of a camera, or px,py,pz,tx,ty,tz[,fovY] in meters and degrees")
+                     "Name of a camera; else px,py,pz,tx,ty,tz[,fovY] in meters and degrees")
         ->type_name("CAMERA")
         ->check(tools::showDefault("the scene's first camera, else one that frames everything"));
     picture->add_option("--view", raw.view, namesOf(viewModes()))
@@ -223,7 +225,7 @@ void declare(CLI::App& app, Options& options, RawOptions& raw) {
     declareLight(app, options, raw);
 
     CLI::Option_group* const device = app.add_option_group("Device");
-    device->add_option("--device", options.device, "Index or part of the name")
+    device->add_option("--device", options.device, "Index, or else part of the name")
         ->type_name("X")
         ->check(tools::showDefault("the first real GPU, else the first device"));
     device->add_flag("--list-devices", options.listDevices, "Print the Vulkan devices and exit");
@@ -243,11 +245,7 @@ void declare(CLI::App& app, Options& options, RawOptions& raw) {
 void understand(const RawOptions& raw, Options& options) {
     options.sizeGiven = !raw.size.empty();
     if (options.sizeGiven) parseSize(raw.size, options.picture);
-    if (raw.camera.find(',') != std::string::npos) {
-        options.camera.camera = parseCamera(raw.camera);
-    } else {
-        options.camera.name = raw.camera;
-    }
+    options.camera = {.camera = parseCamera(raw.camera), .name = raw.camera};
     if (!raw.view.empty()) {
         const std::optional<ViewMode> mode = viewModeFrom(raw.view);
         if (!mode) throw CLI::ValidationError("--view", noSuch("view", raw.view, viewModes()));

@@ -121,10 +121,30 @@ ContentKey sceneContentHash(const LoadedScene& scene);
 ContentKey bakeContentKey(const LoadedScene& scene, const BakeSettings& settings,
                           const gpu::DeviceInfo& device);
 
+/// What lies at the place of an output.
+struct ExistingBake {
+    enum class State : std::uint8_t {
+        None,          ///< nothing
+        Unreadable,    ///< no complete PF_PROBE file of this version
+        OtherProbes,   ///< of another range
+        OtherContent,  ///< made from something else
+        Damaged,       ///< a map, or what stands before the maps, is not what its hash says
+        UpToDate,      ///< the right one; the hash of every map was checked
+    };
+    State state = State::None;
+    std::uint64_t fileBytes = 0;  ///< where it is a PF_PROBE file
+    ProbeCounts counts;           ///< where it is up to date
+    std::string damage;           ///< which map, where one is damaged
+};
+
+/// Reads all of the output that is there, in the calling TBB arena. `key`: bakeContentKey(); `range`: of the
+/// bake.
+ExistingBake inspectBake(const std::filesystem::path& output, const ContentKey& key, const ProbeRange& range);
+
 /// Errors: BadValue (settings out of range, with their name), Cancelled (the observer asked to stop; resume
 /// takes the finished probes), FileNotWritable, GpuOutOfMemory, GpuLost, those of gpu::Scene::build and
 /// ProbeFileWriter. Diagnostics: bake-grid-outside (models stand out of the grid by more than a step),
-/// bake-uncovered-cells, and those of the journal.
+/// bake-uncovered-cells, output-damaged (a note), and those of the journal.
 Result<BakeReport> bakeProbes(gpu::Device& device, const LoadedScene& scene, const BakeSettings& settings,
                               const std::filesystem::path& output, BakeObserver& observer,
                               Diagnostics& diagnostics);

@@ -59,8 +59,8 @@ struct DeviceInfo {
 Result<std::vector<DeviceInfo>> listDevices();
 /// How a device is chosen and opened.
 struct DeviceOptions {
-    /// Empty: the first usable device, real ones before software. A number: the index in listDevices(). Else:
-    /// a part of the name, whatever its case.
+    /// Empty: the first usable device, real ones before software. A number that is an index in listDevices():
+    /// that one. Else the first with this part in its name, whatever its case.
     std::string selector;
     /// The most device and staging memory to take, for cards that others use too; 0 = what there is.
     std::uint64_t memoryBytes = 0;

@@ -52,7 +52,7 @@ class Baker {
 
     Result<BakeReport> run(const std::filesystem::path& output) {
         const ContentKey key = bakeContentKey(scene_, settings_, device_.info());
-        if (!settings_.force && holds(output, key)) {
+        if (!settings_.force && isUpToDate(output, key)) {
             report_.upToDate = true;
             return report_;
         }
@@ -84,12 +84,13 @@ class Baker {
   private:
     // --- Before ---
 
-    bool holds(const std::filesystem::path& output, const ContentKey& key) const {
-        std::error_code ignored;
-        if (!std::filesystem::exists(output, ignored)) return false;
-        DiagnosticList unused;
-        const auto reader = ProbeFileReader::open(output, Limits{}, unused);
-        return reader && reader->contentKey() == key && reader->info().range == info_.range;
+    bool isUpToDate(const std::filesystem::path& output, const ContentKey& key) {
+        const ExistingBake existing = inspectBake(output, key, info_.range);
+        if (existing.state == ExistingBake::State::Damaged) {
+            diagnostics_.note("output-damaged",
+                              "the existing output was damaged (" + existing.damage + "): baked again");
+        }
+        return existing.state == ExistingBake::State::UpToDate;
     }
 
     bool hasGlass() const {

@@ -181,10 +181,8 @@ std::optional<std::size_t> matchingDevice(const std::vector<FoundDevice>& device
                                           const std::string& selector) {
     std::size_t index = 0;
     const char* end = selector.data() + selector.size();
-    if (const auto [rest, error] = std::from_chars(selector.data(), end, index);
-        error == std::errc{} && rest == end) {
-        return index < devices.size() ? std::optional(index) : std::nullopt;
-    }
+    const auto [rest, error] = std::from_chars(selector.data(), end, index);
+    if (error == std::errc{} && rest == end && index < devices.size()) return index;
     for (std::size_t i = 0; i < devices.size(); ++i) {
         if (lowerCase(devices[i].info.name).find(lowerCase(selector)) != std::string::npos) return i;
     }

@@ -93,7 +93,14 @@ struct ConvertReport {
     double writeSeconds = 0.0;    ///< writing, with the sync
 };
 
-/// xxh3-128 of the source bytes, the settings and the versions of tool and format.
+/// What the octrees of an asset tell: all but bytes, seconds and hollowedVoxels.
+ConvertReport countsOf(const OctreeAsset& asset);
+
+/// Rises whenever a conversion gives other bytes than before for some source and settings: what earlier
+/// programs converted is then converted again. tests/golden/converter_revision_test.cpp asks for it.
+inline constexpr int kConverterRevision = 3;
+
+/// xxh3-128 of the source bytes, the settings and the versions of tool, converter and format.
 ContentKey contentKey(std::span<const std::byte> source, const ConvertSettings& settings);
 
 /// Converts source bytes to PF_VOX bytes. `source` names the file for messages and decides nothing else but

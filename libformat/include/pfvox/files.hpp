@@ -12,6 +12,7 @@
 #include <memory>
 #include <pfvox/error.hpp>
 #include <span>
+#include <string_view>
 
 namespace pfvox::io {
 
@@ -30,7 +31,13 @@ class FileBytes {
     std::size_t size_ = 0;
 };
 
-/// Reads a whole regular file. Errors, each with `file`: FileNotFound, FileNotReadable, LimitExceeded.
+/// The path that a text from outside stands for: an entry of a list, a value of a file. The system ends names
+/// at a NUL character, so that a text with one would name another file. Errors: BadValue for such a text and
+/// for an empty one.
+Result<std::filesystem::path> pathFromText(std::string_view text);
+
+/// Reads a whole regular file, or what comes out of a pipe until its writers are done; a pipe without a
+/// writer and devices are refused. Errors, each with `file`: FileNotFound, FileNotReadable, LimitExceeded.
 Result<FileBytes> readFile(const std::filesystem::path& file, std::uint64_t maxBytes);
 
 /// Whether a regular file of this size can be opened. Errors: as readFile.
