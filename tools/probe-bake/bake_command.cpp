@@ -134,17 +134,22 @@ Result<void> checkGrid(const LoadedScene& scene) {
                     text(low), text(high), text(scene.bounds.min), text(scene.bounds.max)));
 }
 
-Result<void> writeDependencies(const BakeOptions& options, const LoadedScene& scene) {
-    if (options.depfile.empty()) return {};
-    DepfileRule rule{.target = options.output, .prerequisites = {options.input}};
+DepfileRule dependencies(const BakeOptions& options, const LoadedScene& scene) {
+    DepfileRule rule{.target = options.output, .prerequisites = {}};
+    const auto place = [](const fs::path& file) { return fs::absolute(file).lexically_normal(); };
+    std::vector<fs::path> known;  // to the build or to the rule
+    for (const std::string& file : options.depfileWithout) known.push_back(place(file));
+    const auto add = [&](const fs::path& file) {
+        if (std::ranges::count(known, place(file)) != 0) return;
+        known.push_back(place(file));
+        rule.prerequisites.push_back(file);
+    };
+    add(options.input);
     for (const PlacedAsset& part : scene.parts) {
-        if (part.model >= scene.scene.models.size()) continue;
-        const fs::path model = fs::path(options.input).parent_path() / scene.scene.models[part.model].path;
-        if (canonicalName(model) != canonicalName(options.input) &&
-            std::ranges::count(rule.prerequisites, model) == 0)
-            rule.prerequisites.push_back(model);
+        if (part.model < scene.scene.models.size())
+            add(fs::path(options.input).parent_path() / scene.scene.models[part.model].path);
     }
-    return writeDepfile(options.depfile, {rule});
+    return rule;
 }
 
 /// --if-changed: the same bytes get their old time back. With a depfile and without it, what is up to date
@@ -185,6 +190,8 @@ class BakeRun {
     Result<void> bake(DiagnosticList& diagnostics) {
         PFVOX_TRY(const LoadedScene, scene, loadScene(options_.input, limits_, diagnostics));
         PFVOX_CHECK(checkGrid(scene));
+        if (!options_.depfile.empty())  // better now than after the bake
+            PFVOX_CHECK(depfileText({dependencies(options_, scene)}, depfileReader(options_.ifChanged)));
         const auto settings = settingsOf(options_, scene.probes.probeCount());
         if (!settings) {
             usage_ = settings.error();
@@ -218,7 +225,9 @@ class BakeRun {
         if (!report) return tl::make_unexpected(withRemedy(std::move(report).error(), options_, &device));
         outcome_.report = *report;
         setTimeStamp(options_, existing, report->upToDate, limits_);
-        return writeDependencies(options_, scene);
+        if (options_.depfile.empty()) return {};
+        return writeDepfile(options_.depfile, {dependencies(options_, scene)},
+                            depfileReader(options_.ifChanged));
     }
 
     ExitCode failed(Error error) {
@@ -258,6 +267,7 @@ ExitCode listAllDevices(const BakeOptions& options, Reporter& reporter) {
 ExitCode runBake(const CLI::App& command, const BakeOptions& options) {
     ReporterSettings settings = options.common.reporterSettings();
     settings.warningsAsErrors = options.warningsAsErrors;
+    if (options.noSummary && settings.verbosity == Verbosity::Normal) settings.verbosity = Verbosity::Warnings;
     Reporter reporter(settings);
     const auto limits = parseLimits(options.common.limits);
     if (!limits) return usageError(command, limits.error());

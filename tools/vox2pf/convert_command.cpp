@@ -147,6 +147,9 @@ void addBuildOptions(CLI::App& command, ConvertOptions& options) {
     command.add_flag("--fail-fast", options.failFast, "start no further file after a failure")
         ->group(group::kBuild);
     command
+        .add_flag("--no-summary", options.noSummary, "print nothing but warnings and errors, for builds")
+        ->group(group::kBuild);
+    command
         .add_flag("--warnings-as-errors", options.warningsAsErrors,
                   "a file with warnings fails, nothing is written")
         ->group(group::kBuild);
@@ -203,6 +206,7 @@ std::vector<AssetTask> makeTasks(const std::vector<InputOutput>& pairs, const Se
 ExitCode runConvert(const CLI::App& command, const ConvertOptions& options) {
     ReporterSettings reporterSettings = options.common.reporterSettings();
     reporterSettings.warningsAsErrors = options.warningsAsErrors;
+    if (options.noSummary && reporterSettings.verbosity == Verbosity::Normal) reporterSettings.verbosity = Verbosity::Warnings;
     Reporter reporter(reporterSettings);
     const auto stopWith = [&](const Error& error) {
         reporter.error(error);
