@@ -298,9 +298,9 @@ function(pfvox_add_probe_bake target)
   cmake_path(GET output FILENAME name)
   _pfvox_time_stamp_option(time_stamps)
   _pfvox_gpu_pool()
-  _pfvox_bake_inputs("${output}" "${scene}")
+  _pfvox_bake_inputs("${output}" "${scene}" "${depfile}")
   add_custom_command(OUTPUT "${output}"
-    COMMAND pfvox::probe-bake bake --no-summary ${time_stamps} --depfile "${depfile}" ${depfile_without} ${ARG_OPTIONS}
+    COMMAND pfvox::probe-bake bake --no-summary ${time_stamps} --depfile "${depfile}" ${depfile_known} ${ARG_OPTIONS}
             "${scene}" -o "${output}"
     DEPENDS pfvox::probe-bake "${scene}" ${named_inputs} ${ARG_DEPENDS}
     DEPFILE "${depfile}"
@@ -318,12 +318,10 @@ function(pfvox_add_probe_bake target)
 endfunction()
 
 # What a bake with this output stands on. The models are not named: the asset targets come before the first bake, whose depfile
-# names those that count. Only what the depfile cannot tell is named, in `named_inputs`, and `depfile_without` keeps it out of
-# there. Sets `output_dir`, too: the OUTPUT_DIR of the assets that the output lies in, else its own folder.
-function(_pfvox_bake_inputs output scene)
+# names those that count. Only what a depfile cannot tell is named, in `named_inputs`, and kept out of the depfile by
+# `depfile_known`. Sets `output_dir`, too: the OUTPUT_DIR of the assets that the output lies in, else its own folder.
+function(_pfvox_bake_inputs output scene depfile)
   cmake_path(GET output PARENT_PATH output_dir)
-  set(named "")
-  set(without "")
   set(candidates "${scene}")
   foreach(assets IN LISTS ARG_ASSETS)
     get_target_property(outputs ${assets} PFVOX_OUTPUTS)
@@ -334,18 +332,25 @@ function(_pfvox_bake_inputs output scene)
       set(output_dir "${assets_dir}")
     endif()
   endforeach()
-  list(REMOVE_DUPLICATES candidates)
   _pfvox_untellable_characters(characters DEPFILE)
+  set(named "")
   foreach(file IN LISTS candidates)
     _pfvox_first_of(character "${file}" "${characters}")
     if(character)
       list(APPEND named "${file}")
-      list(APPEND without --depfile-without "${file}")
     endif()
   endforeach()
+  set(depfile_known "")
+  if(named)
+    set(list "${depfile}.known")
+    list(JOIN named "\n" lines)
+    file(CONFIGURE OUTPUT "${list}" CONTENT "@lines@\n" @ONLY)
+    set(depfile_known --depfile-known "${list}")
+    list(APPEND named "${list}")
+  endif()
   set(output_dir "${output_dir}" PARENT_SCOPE)
   set(named_inputs "${named}" PARENT_SCOPE)
-  set(depfile_without "${without}" PARENT_SCOPE)
+  set(depfile_known "${depfile_known}" PARENT_SCOPE)
 endfunction()
 
 function(pfvox_copy_vdb_module target)

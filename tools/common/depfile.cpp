@@ -9,9 +9,9 @@ namespace pfvox::tools {
 
 namespace {
 
-// What cannot be told, escaped or not. make: ';' begins a recipe, '=' an assignment, '*', '?' and '[' stand for
-// other names, and CMake loses ':', '|' and '\'. ninja ends a name at most of these; what it could be told, '#'
-// and '$', CMake loses on the way to it.
+// What cannot be told, escaped or not. make: ';' begins a recipe, '=' an assignment, '*', '?' and '[' stand
+// for other names, and CMake loses ':', '|' and '\'. ninja ends a name at most of these; what it could be
+// told, '#' and '$', CMake loses on the way to it.
 constexpr std::string_view kUntellableToMake = ":;=|\\*?[";
 constexpr std::string_view kUntellableToNinja = "\"#$&'*:;<>?\\^`|";
 

@@ -134,11 +134,19 @@ Result<void> checkGrid(const LoadedScene& scene) {
                     text(low), text(high), text(scene.bounds.min), text(scene.bounds.max)));
 }
 
-DepfileRule dependencies(const BakeOptions& options, const LoadedScene& scene) {
-    DepfileRule rule{.target = options.output, .prerequisites = {}};
+/// Scene and models. What --depfile-known lists is there already: the list stands for it.
+Result<DepfileRule> dependencies(const BakeOptions& options, const LoadedScene& scene, const Limits& limits) {
     const auto place = [](const fs::path& file) { return fs::absolute(file).lexically_normal(); };
+    DepfileRule rule{.target = options.output, .prerequisites = {}};
     std::vector<fs::path> known;  // to the build or to the rule
-    for (const std::string& file : options.depfileWithout) known.push_back(place(file));
+    if (!options.depfileKnown.empty()) {
+        PFVOX_TRY(const io::FileBytes, list, io::readFile(options.depfileKnown, limits.maxFileBytes));
+        const auto text =
+            std::string(reinterpret_cast<const char*>(list.bytes().data()), list.bytes().size());
+        std::istringstream lines(text);
+        for (std::string line; std::getline(lines, line);) known.push_back(place(line));
+        rule.prerequisites.emplace_back(options.depfileKnown);
+    }
     const auto add = [&](const fs::path& file) {
         if (std::ranges::count(known, place(file)) != 0) return;
         known.push_back(place(file));
@@ -190,8 +198,13 @@ class BakeRun {
     Result<void> bake(DiagnosticList& diagnostics) {
         PFVOX_TRY(const LoadedScene, scene, loadScene(options_.input, limits_, diagnostics));
         PFVOX_CHECK(checkGrid(scene));
-        if (!options_.depfile.empty())  // better now than after the bake
-            PFVOX_CHECK(depfileText({dependencies(options_, scene)}, depfileReader(options_.ifChanged)));
+        DepfileRule inputs;
+        if (!options_.depfile.empty()) {
+            PFVOX_TRY(DepfileRule, rule, dependencies(options_, scene, limits_));
+            inputs = std::move(rule);
+            // Better now than after the bake.
+            PFVOX_CHECK(depfileText({inputs}, depfileReader(options_.ifChanged)));
+        }
         const auto settings = settingsOf(options_, scene.probes.probeCount());
         if (!settings) {
             usage_ = settings.error();
@@ -226,8 +239,7 @@ class BakeRun {
         outcome_.report = *report;
         setTimeStamp(options_, existing, report->upToDate, limits_);
         if (options_.depfile.empty()) return {};
-        return writeDepfile(options_.depfile, {dependencies(options_, scene)},
-                            depfileReader(options_.ifChanged));
+        return writeDepfile(options_.depfile, {inputs}, depfileReader(options_.ifChanged));
     }
 
     ExitCode failed(Error error) {
@@ -267,7 +279,8 @@ ExitCode listAllDevices(const BakeOptions& options, Reporter& reporter) {
 ExitCode runBake(const CLI::App& command, const BakeOptions& options) {
     ReporterSettings settings = options.common.reporterSettings();
     settings.warningsAsErrors = options.warningsAsErrors;
-    if (options.noSummary && settings.verbosity == Verbosity::Normal) settings.verbosity = Verbosity::Warnings;
+    if (options.noSummary && settings.verbosity == Verbosity::Normal)
+        settings.verbosity = Verbosity::Warnings;
     Reporter reporter(settings);
     const auto limits = parseLimits(options.common.limits);
     if (!limits) return usageError(command, limits.error());

@@ -141,18 +141,15 @@ void addRunOptions(CLI::App& command, BakeOptions& options) {
         ->check(suggestFiles({".d"}))
         ->group(group::kBuild);
     command
-        .add_option("--depfile-without", options.depfileWithout,
-                    "a file that the build knows already: the depfile does not name it; may be given again")
-        ->option_text("FILE")
-        ->expected(1)
-        ->take_all()
+        .add_option("--depfile-known", options.depfileKnown,
+                    "list of files, one a line, that the build knows: the depfile names the list instead")
+        ->option_text("LIST")
         ->group(group::kBuild);
     command
         .add_flag("--if-changed", options.ifChanged,
                   "keep the time stamp of an output that stays the same (ninja)")
         ->group(group::kBuild);
-    command
-        .add_flag("--no-summary", options.noSummary, "print nothing but warnings and errors, for builds")
+    command.add_flag("--no-summary", options.noSummary, "print nothing but warnings and errors, for builds")
         ->group(group::kBuild);
     command
         .add_flag("--warnings-as-errors", options.warningsAsErrors,

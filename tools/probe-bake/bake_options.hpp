@@ -25,7 +25,7 @@ struct BakeOptions {
     std::string device;
     std::uint64_t deviceMemoryMiB = 0;
     std::string depfile;
-    std::vector<std::string> depfileWithout;
+    std::string depfileKnown;
     bool listDevices = false;
     bool dryRun = false;
     bool resume = false;

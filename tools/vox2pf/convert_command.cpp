@@ -146,8 +146,7 @@ void addBuildOptions(CLI::App& command, ConvertOptions& options) {
         ->group(group::kBuild);
     command.add_flag("--fail-fast", options.failFast, "start no further file after a failure")
         ->group(group::kBuild);
-    command
-        .add_flag("--no-summary", options.noSummary, "print nothing but warnings and errors, for builds")
+    command.add_flag("--no-summary", options.noSummary, "print nothing but warnings and errors, for builds")
         ->group(group::kBuild);
     command
         .add_flag("--warnings-as-errors", options.warningsAsErrors,
@@ -206,7 +205,8 @@ std::vector<AssetTask> makeTasks(const std::vector<InputOutput>& pairs, const Se
 ExitCode runConvert(const CLI::App& command, const ConvertOptions& options) {
     ReporterSettings reporterSettings = options.common.reporterSettings();
     reporterSettings.warningsAsErrors = options.warningsAsErrors;
-    if (options.noSummary && reporterSettings.verbosity == Verbosity::Normal) reporterSettings.verbosity = Verbosity::Warnings;
+    if (options.noSummary && reporterSettings.verbosity == Verbosity::Normal)
+        reporterSettings.verbosity = Verbosity::Warnings;
     Reporter reporter(reporterSettings);
     const auto stopWith = [&](const Error& error) {
         reporter.error(error);
