@@ -6,6 +6,7 @@
 #include <pfvox/bake.hpp>
 #include <pfvox/files.hpp>
 #include <pfvox/probe_file.hpp>
+#include <sstream>
 
 #include "common/depfile.hpp"
 #include "common/inputs.hpp"
