@@ -6,7 +6,8 @@
 #   [OUTPUT_DIR <folder>]        default CMAKE_CURRENT_BINARY_DIR/<target>
 #   [SETTINGS <file>]            vox2pf settings (TOML)
 #   [OPTIONS <option>...]        further options of vox2pf convert
-#   [DEPENDS <target | file>...])
+#   [DEPENDS <target | file>...]
+#   [PRUNE])                     removes what it made of sources that are gone
 #
 # pfvox_add_probe_bake(<target> [ALL]
 #   SCENE <scene.toml | file.pf_vox>
@@ -16,12 +17,18 @@
 #   [OPTIONS <option>...]        further options of probe-bake bake
 #   [DEPENDS <target | file>...])
 #
+# pfvox_install_assets(TARGETS <target>... DESTINATION <folder> [COMPONENT <component>])
+#                                installs what these targets make, and nothing else that lies there
+#
 # pfvox_copy_vdb_module(<target>)  puts OpenVDB support beside a program that links pfvox::import
 #
 # Properties of the targets: PFVOX_OUTPUTS (absolute paths of what is made), PFVOX_OUTPUT_DIR, PFVOX_BASE_DIR and
-# PFVOX_SOURCES; of a bake also PFVOX_SCENE, the scene that is baked.
+# PFVOX_SOURCES; of a bake also PFVOX_SCENE, the scene that is baked. Of these functions, all is well where nothing is printed.
 cmake_policy(PUSH)
 cmake_policy(VERSION 3.25) # functions keep the policies under which they were defined
+include(${CMAKE_CURRENT_LIST_DIR}/PfvoxAssetNames.cmake)
+include(${CMAKE_CURRENT_LIST_DIR}/PfvoxAssetOutputs.cmake)
+include(${CMAKE_CURRENT_LIST_DIR}/PfvoxHostTools.cmake)
 
 # Stops when a function was called with what it does not know, or without what it needs. Reads ARG_* of the caller.
 function(_pfvox_check_call function target)
@@ -54,6 +61,7 @@ function(_pfvox_check_program function target program component)
       "Install it (Debian package pfvox-tools) and ask for it: find_package(pfvox CONFIG REQUIRED COMPONENTS ${component})."
       "${why}")
   endif()
+  _pfvox_check_host(${function} ${target} ${program})
 endfunction()
 
 # How outputs that stay the same are kept from building everything behind them: ninja looks at the time stamp again when
@@ -95,34 +103,27 @@ function(_pfvox_depfile result output)
   set(${result} "${folder}/${name}.d" PARENT_SCOPE)
 endfunction()
 
-# What follows DEPFILE in the command of a source. ninja reads no depfile with names such as "Bob's.vox": it would run the command in
-# every build. That of a model is not needed, since it names nothing but the source.
-function(_pfvox_depfile_arguments result depfile source output)
-  set(arguments DEPFILE "${depfile}")
-  if(CMAKE_GENERATOR MATCHES "Ninja" AND NOT source MATCHES "\\.toml$" AND "${source}${output}" MATCHES "['\"`&*?\$^]")
-    set(arguments "")
-  endif()
-  set(${result} "${arguments}" PARENT_SCOPE)
-endfunction()
-
-# The custom command for one source. Reads base_dir, output_dir, options, settings and inputs of the caller.
+# The custom command for one source. Reads base_dir, output_dir, options, settings and inputs of the caller. All that it reads is
+# known, so it needs no depfile, which some names could not stand in.
 function(_pfvox_convert source output)
   cmake_path(RELATIVE_PATH source BASE_DIRECTORY "${base_dir}" OUTPUT_VARIABLE relative)
-  _pfvox_depfile(depfile "${output}")
-  _pfvox_depfile_arguments(depfile_arguments "${depfile}" "${source}" "${output}")
   _pfvox_time_stamp_option(time_stamps)
+  set(touch "")
+  if(NOT time_stamps)
+    set(touch COMMAND ${CMAKE_COMMAND} -E touch_nocreate "${output}")
+  endif()
   # One thread: the build system runs as many of these commands as there are processors.
   add_custom_command(OUTPUT "${output}"
-    COMMAND pfvox::vox2pf convert -j 1 ${time_stamps} --base-dir "${base_dir}" ${settings} --depfile "${depfile}"
-            ${options} "${source}" -o "${output_dir}/"
+    COMMAND pfvox::vox2pf convert -j 1 --no-summary ${time_stamps} --base-dir "${base_dir}" ${settings} ${options}
+            "${source}" -o "${output_dir}/"
+    ${touch}
     DEPENDS pfvox::vox2pf "${source}" ${inputs}
-    ${depfile_arguments}
     COMMENT "Converting ${relative}"
     VERBATIM COMMAND_EXPAND_LISTS)
 endfunction()
 
 function(pfvox_add_assets target)
-  cmake_parse_arguments(PARSE_ARGV 1 ARG "ALL" "BASE_DIR;OUTPUT_DIR;SETTINGS" "SOURCES;OPTIONS;DEPENDS")
+  cmake_parse_arguments(PARSE_ARGV 1 ARG "ALL;PRUNE" "BASE_DIR;OUTPUT_DIR;SETTINGS" "SOURCES;OPTIONS;DEPENDS")
   _pfvox_check_call(pfvox_add_assets ${target} SOURCES)
   _pfvox_check_program(pfvox_add_assets ${target} vox2pf tools)
 
@@ -141,6 +142,7 @@ function(pfvox_add_assets target)
   set(settings "")
   if(ARG_SETTINGS)
     _pfvox_absolute(ARG_SETTINGS "${CMAKE_CURRENT_SOURCE_DIR}")
+    _pfvox_check_path("pfvox_add_assets(${target})" "${ARG_SETTINGS}")
     set(settings --settings "${ARG_SETTINGS}")
     list(APPEND inputs "${ARG_SETTINGS}")
   endif()
@@ -149,7 +151,9 @@ function(pfvox_add_assets target)
   set(models "")
   set(scenes "")
   foreach(source IN LISTS ARG_SOURCES)
+    _pfvox_check_path("pfvox_add_assets(${target})" "${source}")
     _pfvox_find_source(source "${base_dir}")
+    _pfvox_check_path("pfvox_add_assets(${target})" "${source}" "${output_dir}")
     _pfvox_output_of(output "${source}" "${base_dir}" "${output_dir}")
     if(output IN_LIST models OR output IN_LIST scenes)
       message(FATAL_ERROR "pfvox_add_assets(${target}): two sources become ${output}; the second is ${source}")
@@ -176,6 +180,7 @@ function(pfvox_add_assets target)
   set_target_properties(${target} PROPERTIES
     PFVOX_OUTPUTS "${outputs}" PFVOX_SOURCES "${sources}"
     PFVOX_BASE_DIR "${base_dir}" PFVOX_OUTPUT_DIR "${output_dir}")
+  _pfvox_remember_outputs(${target} "${outputs}" "${ARG_PRUNE}")
 endfunction()
 
 # As people write it: relative to BASE_DIR or, with the folder in front, to the current source folder.
@@ -240,10 +245,12 @@ function(_pfvox_carry scene output)
   get_property(carrier GLOBAL PROPERTY PFVOX_CARRIER_${key})
   if(NOT carrier)
     set(carrier ${target}_scene)
+    _pfvox_check_path("pfvox_add_probe_bake(${target})" "${scene}" "${output}")
     set(options "")
     set(settings "")
     _pfvox_convert("${scene}" "${output}")
     _pfvox_add_target(${carrier} "" "${output}" ${assets})
+    _pfvox_remember_outputs(${carrier} "${output}" FALSE)
     set_property(GLOBAL PROPERTY PFVOX_CARRIER_${key} ${carrier})
   endif()
   set(carrier ${carrier} PARENT_SCOPE)
@@ -279,8 +286,11 @@ function(pfvox_add_probe_bake target)
   if(NOT output MATCHES "\\.pf_probe$")
     message(FATAL_ERROR "pfvox_add_probe_bake(${target}): OUTPUT ${ARG_OUTPUT} does not end in .pf_probe")
   endif()
+  _pfvox_check_path("pfvox_add_probe_bake(${target})" "${ARG_SCENE}" "${ARG_OUTPUT}")
+  _pfvox_check_depfile_path("pfvox_add_probe_bake(${target})" "${output}")
   set(scene "${ARG_SCENE}")
   _pfvox_absolute(scene "${CMAKE_CURRENT_SOURCE_DIR}")
+  _pfvox_check_path("pfvox_add_probe_bake(${target})" "${scene}")
   set(carrier "")
   _pfvox_scene_of_assets(${target})
 
@@ -288,10 +298,11 @@ function(pfvox_add_probe_bake target)
   cmake_path(GET output FILENAME name)
   _pfvox_time_stamp_option(time_stamps)
   _pfvox_gpu_pool()
-  # The models are not named here: the asset targets come before the first bake, whose depfile names those that count.
+  _pfvox_bake_inputs("${output}" "${scene}" "${depfile}")
   add_custom_command(OUTPUT "${output}"
-    COMMAND pfvox::probe-bake bake ${time_stamps} --depfile "${depfile}" ${ARG_OPTIONS} "${scene}" -o "${output}"
-    DEPENDS pfvox::probe-bake "${scene}" ${ARG_DEPENDS}
+    COMMAND pfvox::probe-bake bake --no-summary ${time_stamps} --depfile "${depfile}" ${depfile_known} ${ARG_OPTIONS}
+            "${scene}" -o "${output}"
+    DEPENDS pfvox::probe-bake "${scene}" ${named_inputs} ${ARG_DEPENDS}
     DEPFILE "${depfile}"
     JOB_POOL pfvox_gpu
     COMMENT "Baking ${name}"
@@ -301,7 +312,45 @@ function(pfvox_add_probe_bake target)
   foreach(needed IN LISTS ARG_ASSETS carrier)
     add_dependencies(${target} ${needed})
   endforeach()
-  set_target_properties(${target} PROPERTIES PFVOX_OUTPUTS "${output}" PFVOX_SCENE "${scene}")
+  set_target_properties(${target} PROPERTIES
+    PFVOX_OUTPUTS "${output}" PFVOX_SCENE "${scene}" PFVOX_OUTPUT_DIR "${output_dir}")
+  _pfvox_remember_outputs(${target} "${output}" FALSE)
+endfunction()
+
+# What a bake with this output stands on. The models are not named: the asset targets come before the first bake, whose depfile
+# names those that count. Only what a depfile cannot tell is named, in `named_inputs`, and kept out of the depfile by
+# `depfile_known`. Sets `output_dir`, too: the OUTPUT_DIR of the assets that the output lies in, else its own folder.
+function(_pfvox_bake_inputs output scene depfile)
+  cmake_path(GET output PARENT_PATH output_dir)
+  set(candidates "${scene}")
+  foreach(assets IN LISTS ARG_ASSETS)
+    get_target_property(outputs ${assets} PFVOX_OUTPUTS)
+    list(APPEND candidates ${outputs})
+    get_target_property(assets_dir ${assets} PFVOX_OUTPUT_DIR)
+    cmake_path(IS_PREFIX assets_dir "${output}" NORMALIZE below)
+    if(below)
+      set(output_dir "${assets_dir}")
+    endif()
+  endforeach()
+  _pfvox_untellable_characters(characters DEPFILE)
+  set(named "")
+  foreach(file IN LISTS candidates)
+    _pfvox_first_of(character "${file}" "${characters}")
+    if(character)
+      list(APPEND named "${file}")
+    endif()
+  endforeach()
+  set(depfile_known "")
+  if(named)
+    set(list "${depfile}.known")
+    list(JOIN named "\n" lines)
+    file(CONFIGURE OUTPUT "${list}" CONTENT "@lines@\n" @ONLY)
+    set(depfile_known --depfile-known "${list}")
+    list(APPEND named "${list}")
+  endif()
+  set(output_dir "${output_dir}" PARENT_SCOPE)
+  set(named_inputs "${named}" PARENT_SCOPE)
+  set(depfile_known "${depfile_known}" PARENT_SCOPE)
 endfunction()
 
 function(pfvox_copy_vdb_module target)

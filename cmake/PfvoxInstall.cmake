@@ -48,11 +48,15 @@ install(DIRECTORY ${pfvox_header_dirs} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} C
 configure_package_config_file(cmake/pfvoxConfig.cmake.in ${PROJECT_BINARY_DIR}/cmake/pfvoxConfig.cmake
   INSTALL_DESTINATION ${pfvox_cmake_dir} PATH_VARS CMAKE_INSTALL_BINDIR NO_SET_AND_CHECK_MACRO NO_CHECK_REQUIRED_COMPONENTS_MACRO)
 # Before 1.0 a new minor version may change everything.
-write_basic_package_version_file(${PROJECT_BINARY_DIR}/cmake/pfvoxConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/cmake/pfvoxConfigVersion.cmake COMPATIBILITY SameMinorVersion
+  ARCH_INDEPENDENT) # the programs serve any target; pfvoxConfig.cmake looks at what the libraries are for
 install(FILES
   ${PROJECT_BINARY_DIR}/cmake/pfvoxConfig.cmake
   ${PROJECT_BINARY_DIR}/cmake/pfvoxConfigVersion.cmake
   cmake/PfvoxAssets.cmake
+  cmake/PfvoxAssetNames.cmake
+  cmake/PfvoxAssetOutputs.cmake
+  cmake/PfvoxHostTools.cmake
   DESTINATION ${pfvox_cmake_dir} COMPONENT dev)
 
 # pkg-config: the reader library. The folders count from the file itself, so that the tree can be moved.

@@ -207,7 +207,34 @@ TEST(ExitCode, ofARunFollowsItsFailures) {
 }
 
 TEST(Depfile, escapesWhatMakeWouldMisread) {
-    EXPECT_EQ(depfileText({{.target = "o ut", .prerequisites = {"a#b", "c$d"}}}), "o\\ ut: a\\#b c$$d\n");
+    EXPECT_EQ(depfileText({{.target = "o ut", .prerequisites = {"a#b", "c$d", "~/e"}}}, DepfileReader::Make)
+                  .value(),
+              "o\\ ut: a\\#b c$$d ./~/e\n");
+}
+
+TEST(Depfile, ofNamesThatItsReaderCannotBeToldIsAnError) {
+    const auto refused = [](DepfileReader reader, bool asTarget) {
+        std::string characters;
+        for (int code = ' '; code < 127; ++code) {
+            const char c = static_cast<char>(code);
+            const std::string name = std::string("x") + c + "y";
+            const DepfileRule rule = asTarget ? DepfileRule{.target = name, .prerequisites = {"a"}}
+                                              : DepfileRule{.target = "a", .prerequisites = {name}};
+            const auto text = depfileText({rule}, reader);
+            if (text) continue;
+            EXPECT_EQ(text.error().file, name);
+            EXPECT_THAT(text.error().message, ::testing::HasSubstr("rename it"));
+            characters += c;
+        }
+        for (const std::string control : {"\n", "\t", "\r", "\x1b"})
+            EXPECT_FALSE(depfileText({{.target = "a", .prerequisites = {"x" + control}}}, reader));
+        return characters;
+    };
+    EXPECT_EQ(refused(DepfileReader::Make, false), "*:;=?[\\|");
+    EXPECT_EQ(refused(DepfileReader::Make, true), "%*:;=?[\\|");
+    EXPECT_EQ(refused(DepfileReader::Ninja, false), "\"#$&'*:;<>?\\^`|");
+    for (const char* name : {"lib(member)", "all&"})
+        EXPECT_FALSE(depfileText({{.target = "a", .prerequisites = {name}}}, DepfileReader::Make)) << name;
 }
 
 TEST(Batch, handsResultsOutInOrderForAnyNumberOfThreads) {

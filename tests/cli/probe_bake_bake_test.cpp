@@ -52,6 +52,23 @@ TEST_F(ProbeBakeScene, BakesAndLeavesAloneWhatIsUpToDate) {
     EXPECT_THAT(seeded.out, HasSubstr("changed since the last bake"));
 }
 
+TEST_F(ProbeBakeScene, TheDepfileNamesAListInPlaceOfWhatTheBuildKnows) {
+    std::filesystem::copy(folder / "box.pf_vox", folder / "it's.pf_vox");
+    writeScene("scene.toml", "it's.pf_vox", kGrid);
+    const std::vector<std::string> bake{"scene.toml", "-o", "out.pf_probe", "--if-changed", "--depfile", "d"};
+    const ProcessResult refused = run(tiny(bake));
+    EXPECT_EQ(refused.exitCode, 4);
+    EXPECT_THAT(refused.err, HasSubstr("the character '"));
+    EXPECT_FALSE(std::filesystem::exists(folder / "d"));
+    EXPECT_FALSE(std::filesystem::exists(folder / "out.pf_probe")) << "refused before the bake";
+
+    writeText(folder / "known.txt", "other.pf_vox\n./it's.pf_vox\n");
+    std::vector<std::string> known = bake;
+    known.insert(known.end(), {"--depfile-known", "known.txt"});
+    EXPECT_EQ(run(tiny(known)).exitCode, 0);
+    EXPECT_EQ(readText(folder / "d"), "out.pf_probe: known.txt scene.toml\n");
+}
+
 TEST_F(ProbeBakeScene, ADryRunSaysWhatWouldBeBaked) {
     writeScene("scene.toml", "box.pf_vox", kGrid);
     const ProcessResult planned = run(tiny({"scene.toml", "-o", "out.pf_probe", "--dry-run", "--json"}));

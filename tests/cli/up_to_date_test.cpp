@@ -148,6 +148,28 @@ TEST_F(Vox2pf, depfileNamesSourcesAndSettingsWithEscapes) {
     EXPECT_EQ(readText(folder / "d/o.d"), "o.pf_vox: in/a\\ b\\#c$$d.vox s.toml\n");
 }
 
+TEST_F(Vox2pf, depfileNeverHoldsARuleOfAName) {
+    addSource("in/good.vox");
+    addSource("in/x:\nall:;touch\tPWNED;\tb.vox");
+    for (const std::vector<std::string>& reader : {std::vector<std::string>{}, {"--if-changed"}}) {
+        std::vector<std::string> arguments{"in", "-o", "out", "--depfile", "d.d"};
+        arguments.insert(arguments.end(), reader.begin(), reader.end());
+        const ProcessResult result = run(arguments);
+        EXPECT_EQ(result.exitCode, 4) << result.err;
+        EXPECT_THAT(result.err, AllOf(HasSubstr("a depfile for"), HasSubstr("[bad-value]")));
+        EXPECT_FALSE(fs::exists(folder / "d.d"));
+        EXPECT_FALSE(fs::exists(folder / "out"));
+    }
+}
+
+TEST_F(Vox2pf, noSummaryLeavesWarningsAndErrors) {
+    addSource("a.vox");
+    const ProcessResult result = run({"a.vox", "-o", "a.pf_vox", "--no-summary"});
+    EXPECT_EQ(result.exitCode, 0);
+    EXPECT_EQ(result.out + result.err, "");
+    EXPECT_THAT(run({"none.vox", "-o", "a.pf_vox", "--no-summary"}).err, HasSubstr("none.vox"));
+}
+
 TEST_F(Vox2pf, settingsFileAppliesOverridesByPattern) {
     addSource("in/a.vox");
     addSource("in/props/b.vox", "statue.vox");

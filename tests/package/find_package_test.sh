@@ -51,7 +51,26 @@ if(TARGET pfvox::format OR NOT TARGET pfvox::vox2pf)
   message(FATAL_ERROR "what lacks a dependency is left out, the rest is there")
 endif()'
 
+# Programs serve targets of any size, libraries one.
+narrow='set(CMAKE_SIZEOF_VOID_P 4)'
+good "$narrow
+$find"
+bad "$narrow
+find_package(pfvox CONFIG REQUIRED COMPONENTS format)" 'The component format needs libraries for targets of 32 bits'
+
 assets='SOURCES assets/lamp.vox BASE_DIR assets'
+# Programs of this machine, for cross builds: in place of those of the package, and where it has none.
+mkdir "$work/host"
+printf '#!/bin/sh\necho "$@" >>"%s"\nexec "%s" "$@"\n' "$work/host/calls" "$prefix/bin/vox2pf" >"$work/host/vox2pf"
+chmod +x "$work/host/vox2pf"
+cross=(-DCMAKE_SYSTEM_NAME=Linux)
+bad "$find" 'needs the program vox2pf in PFVOX_HOST_TOOLS_DIR (/nowhere)' -DPFVOX_HOST_TOOLS_DIR=/nowhere
+rm -rf "$work/build"
+good "$find
+pfvox_add_assets(a ALL $assets)" "${cross[@]}" -DPFVOX_HOST_TOOLS_DIR="$work/host"
+cmake --build "$work/build" >"$log" 2>&1 || { cat "$log" >&2; fail "build with host tools"; }
+expect_text "$work/host/calls" "lamp.vox"
+rm -rf "$work/build"
 bad "$find
 pfvox_add_assets(a OUTPUT_DIR out)" 'pfvox_add_assets(a): SOURCES is missing'
 bad "$find
@@ -71,6 +90,39 @@ bad "$find
 pfvox_add_assets(a SOURCES assets/lamp.vox OUTPUT_DIR \${CMAKE_CURRENT_SOURCE_DIR})" 'OUTPUT_DIR is BASE_DIR'
 bad 'find_package(pfvox CONFIG REQUIRED COMPONENTS format)
 pfvox_add_assets(a SOURCES assets/lamp.vox)' 'the program vox2pf is not there'
+bad "$find
+pfvox_install_assets(TARGETS a)" 'pfvox_install_assets: DESTINATION is missing'
+bad "$find
+pfvox_install_assets(TARGETS a DESTINATION d)" 'pfvox_install_assets: a is no target of pfvox_add_assets'
+
+# Outputs of sources that are gone: kept, never installed, and removed by PRUNE; files of others are let alone.
+cp "$work/lamp.vox" "$work/project/assets/gone.vox"
+good "$find
+pfvox_add_assets(a ALL BASE_DIR assets SOURCES lamp.vox gone.vox OUTPUT_DIR out)"
+cmake --build "$work/build" >"$log" 2>&1 || { cat "$log" >&2; fail "build"; }
+touch "$work/build/out/mine.pf_vox"
+good "$find
+pfvox_add_assets(a ALL $assets OUTPUT_DIR out)
+pfvox_install_assets(TARGETS a DESTINATION game)"
+expect_file "$work/build/out/gone.pf_vox"
+cmake --install "$work/build" --prefix "$work/shipped" >/dev/null
+expect_file "$work/shipped/game/lamp.pf_vox"
+expect_no_file "$work/shipped/game/gone.pf_vox"
+# What another target makes now is not gone.
+good "$find
+pfvox_add_assets(a ALL PRUNE $assets OUTPUT_DIR out)
+pfvox_add_assets(b BASE_DIR assets SOURCES gone.vox OUTPUT_DIR out)"
+expect_file "$work/build/out/gone.pf_vox"
+good "$find
+pfvox_add_assets(a ALL $assets OUTPUT_DIR out)
+pfvox_add_assets(b BASE_DIR assets SOURCES gone.vox OUTPUT_DIR out)"
+good "$find
+pfvox_add_assets(a ALL $assets OUTPUT_DIR out)
+pfvox_add_assets(b PRUNE BASE_DIR assets SOURCES lamp.vox OUTPUT_DIR b)"
+expect_no_file "$work/build/out/gone.pf_vox"
+expect_file "$work/build/out/lamp.pf_vox"
+[ -e "$work/build/out/mine.pf_vox" ] || fail "PRUNE removed a file that it had not made"
+
 bad "$find
 pfvox_copy_vdb_module(nothing)" 'nothing' # CMake itself tells that there is no such target
 
@@ -134,6 +186,18 @@ good "set(PFVOX_BUILD_GPU OFF)
 add_subdirectory(\"$PFVOX_SOURCE_DIR\" pfvox EXCLUDE_FROM_ALL)
 pfvox_add_assets(a ALL $assets OUTPUT_DIR out)"
 expect_no_text "$log" "faulty" # what Debian's Imath says of itself
+# The build type is the parent's.
+grep -qx 'CMAKE_BUILD_TYPE:STRING=' "$work/build/CMakeCache.txt" || fail "the build type of the parent was changed"
 ninja -C "$work/build" -t commands a >"$log"
 expect_text "$log" '/pfvox/bin/vox2pf" convert '
 expect_text "$log" "vox2pf.dir/main.cpp.o" # which is made first
+
+# Built for another machine it cannot convert: PFVOX_HOST_TOOLS_DIR has what can.
+subproject="set(PFVOX_BUILD_GPU OFF)
+add_subdirectory(\"$PFVOX_SOURCE_DIR\" pfvox EXCLUDE_FROM_ALL)
+pfvox_add_assets(a ALL $assets OUTPUT_DIR out)"
+rm -rf "$work/build"
+bad "$subproject" 'Set PFVOX_HOST_TOOLS_DIR to the folder of one that does' "${cross[@]}"
+good "$subproject" -DPFVOX_HOST_TOOLS_DIR="$work/host"
+cmake --build "$work/build" --target a >"$log" 2>&1 || { cat "$log" >&2; fail "build of a subproject with host tools"; }
+expect_file "$work/build/out/lamp.pf_vox"

@@ -21,7 +21,7 @@ std::vector<std::string> listIn(const std::string& text, const std::string& open
                                 char separator) {
     std::vector<std::string> words;
     for (std::string& word : CLI::detail::split(textIn(text, open, close), separator)) {
-        word = word.substr(0, word.find("->"));  // a transformer lists what becomes what
+        word.resize(std::min(word.size(), word.find("->")));  // a transformer lists what becomes what
         if (!word.empty()) words.push_back(std::move(word));
     }
     return words;

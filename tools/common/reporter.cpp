@@ -79,7 +79,7 @@ Reporter::Reporter(const ReporterSettings& settings)
       errIsTerminal_(::isatty(STDERR_FILENO) != 0) {}
 
 void Reporter::result(std::string_view text) {
-    if (settings_.verbosity == Verbosity::Quiet || settings_.json) return;
+    if (settings_.verbosity < Verbosity::Normal || settings_.json) return;
     const std::scoped_lock lock(mutex_);
     clearProgressLocked();
     write(stdout, withoutForeignCodes(text));
@@ -132,7 +132,7 @@ void Reporter::diagnostics(const std::filesystem::path& file, std::span<const Di
 }
 
 void Reporter::status(std::string_view text) {
-    if (settings_.verbosity == Verbosity::Quiet) return;
+    if (settings_.verbosity < Verbosity::Normal) return;
     const std::scoped_lock lock(mutex_);
     clearProgressLocked();
     write(stderr, escaped(text));
@@ -161,7 +161,7 @@ void Reporter::clearProgressLocked() {
 }
 
 bool Reporter::showsProgress() const {
-    return errIsTerminal_ && settings_.verbosity != Verbosity::Quiet;
+    return errIsTerminal_ && settings_.verbosity >= Verbosity::Normal;
 }
 
 std::string Reporter::styled(Style style, std::string_view text) const {

@@ -18,7 +18,7 @@
 namespace pfvox::tools {
 
 enum class ColorMode { Auto, Always, Never };
-enum class Verbosity { Quiet, Normal, Verbose };
+enum class Verbosity { Quiet, Warnings, Normal, Verbose };
 
 struct ReporterSettings {
     ColorMode color = ColorMode::Auto;  ///< Auto: on a terminal, unless NO_COLOR is set
@@ -33,7 +33,7 @@ class Reporter {
 
     const ReporterSettings& settings() const { return settings_; }
 
-    /// Text for stdout as it is. Quiet keeps it back: a quiet tool answers by its exit code.
+    /// Text for stdout as it is, from Normal on: a quiet tool answers by its exit code.
     void result(std::string_view text);
     /// One JSON value and a newline for stdout, quiet or not. Only when settings().json.
     void jsonLine(std::string_view json);
@@ -42,7 +42,7 @@ class Reporter {
     void error(std::string_view message);
     /// Warnings (unless quiet) and notes (when verbose) about one file.
     void diagnostics(const std::filesystem::path& file, std::span<const Diagnostic> entries);
-    /// What the tool is doing, for people; kept back when quiet.
+    /// What the tool is doing, for people; from Normal on.
     void status(std::string_view message);
 
     /// Shows a line that the next message or progress line replaces. Does nothing where stderr is not a

@@ -6,6 +6,7 @@
 #include <pfvox/bake.hpp>
 #include <pfvox/files.hpp>
 #include <pfvox/probe_file.hpp>
+#include <sstream>
 
 #include "common/depfile.hpp"
 #include "common/inputs.hpp"
@@ -135,17 +136,30 @@ Result<void> checkGrid(const LoadedScene& scene) {
                     text(low), text(high), text(scene.bounds.min), text(scene.bounds.max)));
 }
 
-Result<void> writeDependencies(const BakeOptions& options, const LoadedScene& scene) {
-    if (options.depfile.empty()) return {};
-    DepfileRule rule{.target = options.output, .prerequisites = {options.input}};
-    for (const PlacedAsset& part : scene.parts) {
-        if (part.model >= scene.scene.models.size()) continue;
-        const fs::path model = fs::path(options.input).parent_path() / scene.scene.models[part.model].path;
-        if (canonicalName(model) != canonicalName(options.input) &&
-            std::ranges::count(rule.prerequisites, model) == 0)
-            rule.prerequisites.push_back(model);
+/// Scene and models. What --depfile-known lists is there already: the list stands for it.
+Result<DepfileRule> dependencies(const BakeOptions& options, const LoadedScene& scene, const Limits& limits) {
+    const auto place = [](const fs::path& file) { return fs::absolute(file).lexically_normal(); };
+    DepfileRule rule{.target = options.output, .prerequisites = {}};
+    std::vector<fs::path> known;  // to the build or to the rule
+    if (!options.depfileKnown.empty()) {
+        PFVOX_TRY(const io::FileBytes, list, io::readFile(options.depfileKnown, limits.maxFileBytes));
+        const auto text =
+            std::string(reinterpret_cast<const char*>(list.bytes().data()), list.bytes().size());
+        std::istringstream lines(text);
+        for (std::string line; std::getline(lines, line);) known.push_back(place(line));
+        rule.prerequisites.emplace_back(options.depfileKnown);
     }
-    return writeDepfile(options.depfile, {rule});
+    const auto add = [&](const fs::path& file) {
+        if (std::ranges::count(known, place(file)) != 0) return;
+        known.push_back(place(file));
+        rule.prerequisites.push_back(file);
+    };
+    add(options.input);
+    for (const PlacedAsset& part : scene.parts) {
+        if (part.model < scene.scene.models.size())
+            add(fs::path(options.input).parent_path() / scene.scene.models[part.model].path);
+    }
+    return rule;
 }
 
 /// --if-changed: the same bytes get their old time back. With a depfile and without it, what is up to date
@@ -186,6 +200,13 @@ class BakeRun {
     Result<void> bake(DiagnosticList& diagnostics) {
         PFVOX_TRY(const LoadedScene, scene, loadScene(options_.input, limits_, diagnostics));
         PFVOX_CHECK(checkGrid(scene));
+        DepfileRule inputs;
+        if (!options_.depfile.empty()) {
+            PFVOX_TRY(DepfileRule, rule, dependencies(options_, scene, limits_));
+            inputs = std::move(rule);
+            // Better now than after the bake.
+            PFVOX_CHECK(depfileText({inputs}, depfileReader(options_.ifChanged)));
+        }
         const auto settings = settingsOf(options_, scene.probes.probeCount());
         if (!settings) {
             usage_ = settings.error();
@@ -228,7 +249,8 @@ class BakeRun {
             outcome_.isRepair = existing.state == ExistingBake::State::Damaged;
         }
         setTimeStamp(options_, previous, isUpToDate, limits_);
-        return writeDependencies(options_, scene);
+        if (options_.depfile.empty()) return {};
+        return writeDepfile(options_.depfile, {inputs}, depfileReader(options_.ifChanged));
     }
 
     ExitCode failed(Error error) {
@@ -268,6 +290,8 @@ ExitCode listAllDevices(const BakeOptions& options, Reporter& reporter) {
 ExitCode runBake(const CLI::App& command, const BakeOptions& options) {
     ReporterSettings settings = options.common.reporterSettings();
     settings.warningsAsErrors = options.warningsAsErrors;
+    if (options.noSummary && settings.verbosity == Verbosity::Normal)
+        settings.verbosity = Verbosity::Warnings;
     Reporter reporter(settings);
     const auto limits = parseLimits(options.common.limits);
     if (!limits) return usageError(command, limits.error());

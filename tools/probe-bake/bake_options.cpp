@@ -142,8 +142,15 @@ void addRunOptions(CLI::App& command, BakeOptions& options) {
         ->check(suggestFiles({".d"}))
         ->group(group::kBuild);
     command
+        .add_option("--depfile-known", options.depfileKnown,
+                    "list of files, one a line, that the build knows: the depfile names the list instead")
+        ->option_text("LIST")
+        ->group(group::kBuild);
+    command
         .add_flag("--if-changed", options.ifChanged,
                   "keep the time stamp of an output that stays the same (ninja)")
+        ->group(group::kBuild);
+    command.add_flag("--no-summary", options.noSummary, "print nothing but warnings and errors, for builds")
         ->group(group::kBuild);
     command
         .add_flag("--warnings-as-errors", options.warningsAsErrors,

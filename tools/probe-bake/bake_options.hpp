@@ -25,6 +25,7 @@ struct BakeOptions {
     std::string device;
     std::uint64_t deviceMemoryMiB = 0;
     std::string depfile;
+    std::string depfileKnown;
     bool listDevices = false;
     bool dryRun = false;
     bool resume = false;
@@ -33,6 +34,7 @@ struct BakeOptions {
     bool force = false;
     bool explain = false;
     bool ifChanged = false;
+    bool noSummary = false;
     bool warningsAsErrors = false;
 };
 

@@ -92,10 +92,14 @@ CLI::Option* addSetting(CLI::App& command, const ConvertSetting& setting, std::o
 
 CLI::Option* addSetting(CLI::App& command, const ConvertSetting& setting, std::vector<std::string>& field,
                         SettingsPatch& patch) {
-    return command.add_option_function<std::vector<std::string>>(
-        fmt::format("--{}", setting.option),
-        [&, setting](const std::vector<std::string>& names) { patch.give(setting.key, field, names); },
-        std::string(setting.meaning));
+    return command
+        .add_option_function<std::vector<std::string>>(
+            fmt::format("--{}", setting.option),
+            [&, setting](const std::vector<std::string>& names) { patch.give(setting.key, field, names); },
+            std::string(setting.meaning))
+        ->expected(1)
+        ->take_all()
+        ->allow_extra_args(false);
 }
 
 template <class Enum>
@@ -145,6 +149,8 @@ void addBuildOptions(CLI::App& command, ConvertOptions& options) {
                   "keep the time stamp of outputs that stay the same (ninja)")
         ->group(group::kBuild);
     command.add_flag("--fail-fast", options.failFast, "start no further file after a failure")
+        ->group(group::kBuild);
+    command.add_flag("--no-summary", options.noSummary, "print nothing but warnings and errors, for builds")
         ->group(group::kBuild);
     command
         .add_flag("--warnings-as-errors", options.warningsAsErrors,
@@ -208,6 +214,8 @@ void warnAboutPatterns(const SettingsFile& settings, const std::vector<InputOutp
 ExitCode runConvert(const CLI::App& command, const ConvertOptions& options) {
     ReporterSettings reporterSettings = options.common.reporterSettings();
     reporterSettings.warningsAsErrors = options.warningsAsErrors;
+    if (options.noSummary && reporterSettings.verbosity == Verbosity::Normal)
+        reporterSettings.verbosity = Verbosity::Warnings;
     Reporter reporter(reporterSettings);
     const auto stopWith = [&](const Error& error) {
         reporter.error(error);

@@ -1,7 +1,6 @@
 #include "vox2pf/convert_run.hpp"
 
 #include "common/batch.hpp"
-#include "common/depfile.hpp"
 #include "common/progress.hpp"
 #include "vox2pf/convert_report.hpp"
 
@@ -12,6 +11,10 @@ ExitCode ConvertRun::run(std::vector<AssetTask> tasks) {
     outputs_ = OutputsOfRun(tasks_);
     results_.resize(tasks_.size());
     pending_.resize(tasks_.size());
+    if (const auto names = checkDependencies(); !names) {
+        reporter_.error(names.error());
+        return exitCodeOf(names.error().code);
+    }
     Progress progress(reporter_, tasks_.size());
     runBatch(tasks_.size(), {.threads = options_.common.threads, .failFast = options_.failFast},
              {.work = [&](std::size_t i) { return work(i); },
@@ -81,17 +84,29 @@ void ConvertRun::reportUnstarted() {
     }
 }
 
+DepfileRule ConvertRun::dependencies(const AssetTask& task) const {
+    DepfileRule rule{.target = task.output, .prerequisites = {task.source}};
+    if (!options_.settingsFile.empty() && !task.isScene)
+        rule.prerequisites.emplace_back(options_.settingsFile);
+    return rule;
+}
+
+/// Names that the depfile cannot tell are an error before anything is converted.
+Result<void> ConvertRun::checkDependencies() const {
+    if (options_.depfile.empty()) return {};
+    for (const AssetTask& task : tasks_)
+        PFVOX_CHECK(depfileText({dependencies(task)}, depfileReader(options_.ifChanged)));
+    return {};
+}
+
 bool ConvertRun::writeDependencies() {
     if (options_.depfile.empty() || options_.dryRun) return true;
     std::vector<DepfileRule> rules;
     for (std::size_t i = 0; i < tasks_.size(); ++i) {
         if (results_[i].outcome == Outcome::Failed || results_[i].outcome == Outcome::NotStarted) continue;
-        DepfileRule rule{.target = tasks_[i].output, .prerequisites = {tasks_[i].source}};
-        if (!options_.settingsFile.empty() && !tasks_[i].isScene)
-            rule.prerequisites.emplace_back(options_.settingsFile);
-        rules.push_back(std::move(rule));
+        rules.push_back(dependencies(tasks_[i]));
     }
-    const auto written = writeDepfile(options_.depfile, rules);
+    const auto written = writeDepfile(options_.depfile, rules, depfileReader(options_.ifChanged));
     if (!written) reporter_.error(written.error());
     return written.has_value();
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/command_line.hpp"
+#include "common/depfile.hpp"
 #include "common/reporter.hpp"
 #include "vox2pf/carry_scene.hpp"
 #include "vox2pf/convert_asset.hpp"
@@ -29,6 +30,7 @@ struct ConvertOptions {
     bool explain = false;
     bool failFast = false;
     bool ifChanged = false;
+    bool noSummary = false;
     bool warningsAsErrors = false;
 };
 
@@ -46,6 +48,8 @@ class ConvertRun {
     bool commit(std::size_t i);
     void report(std::size_t i);
     void reportUnstarted();
+    DepfileRule dependencies(const AssetTask& task) const;
+    Result<void> checkDependencies() const;
     bool writeDependencies();
     ExitCode exitCode() const;
 

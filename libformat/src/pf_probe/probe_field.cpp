@@ -213,7 +213,7 @@ Result<void> checkProbeData(const ProbeFieldInfo& info, std::uint32_t index, con
 }
 
 Result<void> checkProximityGrid(const ProbeFieldInfo& info, const ProximityGrid& grid) {
-    const auto bad = [](ErrorCode code, std::string message) {
+    const auto bad = [](ErrorCode code, const std::string& message) {
         return fail(code, "proximity grid: " + message);
     };
     if (!isFinite(grid.start) || !isPositive(grid.step))
