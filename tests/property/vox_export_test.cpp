@@ -5,6 +5,7 @@
 
 #include <pfvox/convert.hpp>
 #include <pfvox/export.hpp>
+#include <pfvox/scene.hpp>
 
 #include "support/corpus.hpp"
 #include "support/vox_asset_cells.hpp"
@@ -89,6 +90,49 @@ TEST(VoxExport, AModelLargerThan256BecomesSeveral) {
     for (const auto& [cell, look] : cells) {
         ASSERT_TRUE(model.at({cell[0], cell[1], cell[2]})) << cell[0] << ' ' << cell[1] << ' ' << cell[2];
     }
+}
+
+// Floats tell whole voxels apart up to 2^24 edges of 1 m, and the edges are 0.125 m here.
+TEST(VoxExport, InstancesFarAwayStayWhereTheyAre) {
+    VoxelAsset asset = test::assetOf({});
+    asset.models.push_back(test::boxModel({0, 0, 0}, {2, 2, 2}, 1));
+    asset.instances.clear();
+    const double voxel = asset.source.voxelSizeMetres = 0.1;
+    const std::vector<double> places{0, 65535, 65536.0 * 3 + 1, 134217727, 134217728, 1073741821};
+    for (const double at : places) {
+        Affine m{voxel};
+        m[3] = voxel * glm::dvec3(at, -at, 1.0);
+        asset.instances.push_back({.model = 0, .worldFromModel = m});
+    }
+    const auto octrees = throughFile(asset);
+    ASSERT_TRUE(octrees) << describe(octrees.error());
+    for (std::size_t i = 0; i < places.size(); ++i)
+        EXPECT_EQ(octrees->instances[i].worldFromModel, asset.instances[i].worldFromModel) << places[i];
+    DiagnosticList diagnostics;
+    const auto exported = exportVox(*octrees, diagnostics);
+    ASSERT_TRUE(exported) << describe(exported.error());
+    const auto back = importBytes(*exported, "back.vox", {.voxelSizeMetres = voxel}, Limits{}, diagnostics);
+    ASSERT_TRUE(back) << describe(back.error());
+    ASSERT_EQ(back->instances.size(), places.size());
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        const WorldBounds box = boundsOf(buildOctrees(*back, Limits{}).value(), Affine{1.0});
+        EXPECT_NEAR(box.max.x, voxel * (places.back() + 2), 1e-6);
+        const glm::dvec3 low =
+            back->instances[i].worldFromModel * glm::dvec4(back->models[0].bounds().min, 1.0);
+        EXPECT_NEAR(low.x / voxel, places[i], 1e-6) << places[i];
+        EXPECT_NEAR(low.y / voxel, -places[i], 1e-6) << places[i];
+    }
+}
+
+TEST(VoxExport, NearTheOriginAFileKeepsItsFirstVersion) {
+    const OctreeAsset near = oneModel(test::boxModel({0, 0, 0}, {2, 3, 4}, 1));
+    OctreeAsset far = near;
+    far.instances[0].worldFromModel[3].x = 5.2e6 + 0.2;
+    const auto minorOf = [](const OctreeAsset& asset) {
+        return static_cast<int>((*encodePfVox(asset, {}))[10]);
+    };
+    EXPECT_EQ(minorOf(near), 0);
+    EXPECT_EQ(minorOf(far), 1);
 }
 
 TEST(VoxExport, WhatAVoxFileCannotHoldIsRefused) {

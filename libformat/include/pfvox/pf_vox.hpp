@@ -18,7 +18,8 @@
 namespace pfvox {
 
 inline constexpr std::uint16_t kPfVoxVersionMajor = 1;  ///< another one cannot be read
-inline constexpr std::uint16_t kPfVoxVersionMinor = 0;  ///< of what is written; later ones can be read
+inline constexpr std::uint16_t kPfVoxVersionMinor =
+    1;  ///< the highest that is written; later ones can be read
 
 /// Required feature bits of the header.
 inline constexpr std::uint32_t kPfVoxResident = 1u << 0;  ///< "resident": Profile::Resident

@@ -46,15 +46,16 @@ struct GridPlacement {
 };
 
 Result<GridPlacement> gridPlacement(const Instance& instance, std::size_t index, double voxelSizeMetres) {
-    // Positions in a file are float32, which is exact to a thousandth of a voxel far beyond any scene's size.
+    // Positions in a file are exact to a 4096th of a voxel (PF_VOX, INSX).
     constexpr double kTolerance = 1e-3;
+    constexpr double kFarthest = 1 << 30;
     GridPlacement placement;
     bool exact = true;
     for (int column = 0; column < 4; ++column) {
         for (int row = 0; row < 3; ++row) {
             const double value = instance.worldFromModel[column][row] / voxelSizeMetres;
             const double whole = std::round(value);
-            exact = exact && std::abs(value - whole) < kTolerance && std::abs(whole) < 1e9;
+            exact = exact && std::abs(value - whole) < kTolerance && std::abs(whole) <= kFarthest;
             auto& target =
                 column < 3 ? placement.columns[static_cast<std::size_t>(column)] : placement.translation;
             target[row] = exact ? static_cast<std::int64_t>(whole) : 0;

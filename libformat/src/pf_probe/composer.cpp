@@ -33,6 +33,8 @@ Result<std::vector<std::byte>> composeHead(FilePlan& plan) {
     }
     std::vector<SectionContent> sections;
     sections.push_back({.fourcc = "INFO", .count = 1, .raw = infoBytes(plan.info)});
+    if (const glm::dvec3& o = plan.info.grid.origin; o != glm::dvec3(0.0))
+        sections.push_back(recordSection("ORIG", std::vector{probe_layout::Origin{{o.x, o.y, o.z}}}));
     if (const auto settings = settingEntries(plan.info.settings); !settings.empty()) {
         sections.push_back(recordSection("BAKE", settings));
         sections.back().mustUnderstand = false;  // readers of 1.0 may skip it

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cmath>
 
 #include "container/section_table.hpp"
 #include "pf_probe/probe_settings.hpp"
@@ -21,7 +22,8 @@ using probe_layout::Record;
 /// More than later versions will have.
 constexpr std::uint64_t kMaxSettings = 1024;
 
-constexpr std::array<std::string_view, 7> kSections{"INFO", "BAKE", "PROB", "INPT", "FRAM", "PROX", "DATA"};
+constexpr std::array<std::string_view, 8> kSections{"INFO", "ORIG", "BAKE", "PROB",
+                                                    "INPT", "FRAM", "PROX", "DATA"};
 
 /// Reads the sections one after the other, each checked against those before.
 class HeadReading {
@@ -38,6 +40,7 @@ class HeadReading {
         for (const std::string_view name : {"INFO", "PROB", "INPT", "FRAM", "DATA"})
             PFVOX_CHECK(table_.require(name));
         PFVOX_CHECK(readInfoSection());
+        PFVOX_CHECK(readOrigin());
         PFVOX_CHECK(readSettings());
         PFVOX_CHECK(readProbes());
         PFVOX_CHECK(readFrames());
@@ -50,6 +53,7 @@ class HeadReading {
     template <class T>
     Result<container::Array<T>> readTable(const Section& section, std::uint64_t count) const;
     Result<void> readInfoSection();
+    Result<void> readOrigin();
     Result<void> readSettings();
     Result<void> readProbes();
     Result<void> readFrames();
@@ -84,6 +88,17 @@ Result<void> HeadReading::readInfoSection() {
     head_.info = *std::move(info);
     // Of one probe that is read, whoever gets it.
     return inSection(section, budget_.take(head_.info.resolution.bytesPerProbe()));
+}
+
+Result<void> HeadReading::readOrigin() {
+    const Section* const section = table_.find("ORIG");
+    if (section == nullptr) return {};
+    PFVOX_TRY(const auto, entries, readTable<probe_layout::Origin>(*section, 1));
+    const auto& o = entries[0].origin;
+    head_.info.grid.origin = {o[0], o[1], o[2]};
+    for (const double v : o)
+        if (!(std::abs(v) < 1e30)) return failInSection(*section, ErrorCode::BadValue, "is out of range");
+    return {};
 }
 
 Result<void> HeadReading::readSettings() {

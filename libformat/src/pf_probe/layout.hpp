@@ -43,6 +43,12 @@ struct Info {
 };
 static_assert(sizeof(Info) == 144 && offsetof(Info, seed) == 72 && offsetof(Info, sceneHash) == 104);
 
+/// ORIG, of a field that does not count from the origin of the world. Since 1.1.
+struct Origin {
+    std::array<double, 3> origin;
+};
+static_assert(sizeof(Origin) == 24);
+
 /// BAKE, one a setting that INFO does not have, ascending by id (ProbeSetting). Since 1.1.
 struct Setting {
     std::uint32_t id;

@@ -56,6 +56,13 @@ layout::Instance toLayout(const Instance& instance, NameTable& names) {
     return record;
 }
 
+/// Whether a float of its own moves the instance too far.
+bool needsExactPlace(const Affine& m) {
+    const double voxel = std::min({glm::length(m[0]), glm::length(m[1]), glm::length(m[2])});
+    const glm::dvec3 rounded(glm::vec3(m[3]));
+    return glm::any(glm::greaterThan(glm::abs(m[3] - rounded), glm::dvec3(layout::kPlaceSlack * voxel)));
+}
+
 layout::Camera toLayout(const Camera& camera, NameTable& names) {
     const glm::vec3 p{camera.position};
     const glm::vec3 t{camera.target};
@@ -144,10 +151,11 @@ struct ModelRecords {
     }
 };
 
-/// MATL, INST, LAYR, CAMR and META.
+/// MATL, INST, INSX, LAYR, CAMR and META.
 struct InfoRecords {
     std::vector<layout::Material> materials;
     std::vector<layout::Instance> instances;
+    std::vector<layout::Place> places;
     std::vector<layout::Layer> layers;
     std::vector<layout::Camera> cameras;
     layout::Meta meta{};
@@ -155,7 +163,13 @@ struct InfoRecords {
 
     InfoRecords(const OctreeAsset& asset, NameTable& names) {
         for (const Material& m : asset.materials) materials.push_back(toLayout(m, names));
-        for (const Instance& i : asset.instances) instances.push_back(toLayout(i, names));
+        bool isFar = false;
+        for (const Instance& i : asset.instances) {
+            instances.push_back(toLayout(i, names));
+            places.push_back({{i.worldFromModel[3].x, i.worldFromModel[3].y, i.worldFromModel[3].z}});
+            isFar = isFar || needsExactPlace(i.worldFromModel);
+        }
+        if (!isFar) places.clear();
         for (const Layer& l : asset.layers)
             layers.push_back({.name = names.add(l.name), .flags = l.hidden ? layout::kLayerHidden : 0});
         for (const Camera& c : asset.cameras) cameras.push_back(toLayout(c, names));
@@ -168,6 +182,10 @@ struct InfoRecords {
     void addTo(std::vector<SectionContent>& sections) const {
         sections.push_back(recordSection("MATL", materials));
         sections.push_back(recordSection("INST", instances));
+        if (!places.empty()) {
+            sections.push_back(recordSection("INSX", places));
+            sections.back().mustUnderstand = false;
+        }
         if (!layers.empty()) sections.push_back(recordSection("LAYR", layers));
         if (!cameras.empty()) sections.push_back(recordSection("CAMR", cameras));
         sections.push_back(recordSection("META", std::vector{meta}));
@@ -186,6 +204,7 @@ Result<void> checkRecords(const InfoRecords& info, const ModelRecords& models) {
     const bool isSound =
         checkInfo({.materials = info.materials,
                    .instances = info.instances,
+                   .places = info.places,
                    .layerCount = info.layers.size(),
                    .cameras = info.cameras,
                    .meta = info.meta},
@@ -217,7 +236,7 @@ Result<std::vector<std::byte>> encode(const OctreeAsset& asset, const EncodeSett
     addRegionSections(models.sources, asset.materials, settings.profile, sections);
     return container::writeSections(
         std::move(sections), {.format = container::kPfVox,
-                              .versionMinor = kPfVoxVersionMinor,
+                              .versionMinor = info.places.empty() ? std::uint16_t{0} : kPfVoxVersionMinor,
                               .requiredFeatures = settings.profile == Profile::Resident ? kPfVoxResident : 0,
                               .optionalFeatures = asset.hollowed ? kPfVoxHollow : 0,
                               .contentKey = settings.contentKey,

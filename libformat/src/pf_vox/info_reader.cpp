@@ -86,6 +86,11 @@ Result<InfoRecords> readInfo(const PfVoxSections& sections, const Limits& limits
     PFVOX_CHECK(assign(records.names, NamePool::read(sections.reader, *names)));
     PFVOX_CHECK(assign(records.materials, sections.readTable<layout::Material>("MATL", limits.maxMaterials)));
     PFVOX_CHECK(assign(records.instances, sections.readTable<layout::Instance>("INST", limits.maxInstances)));
+    if (const layout::Section* const exact = sections.table.find("INSX")) {
+        PFVOX_CHECK(assign(records.places, sections.readTable<layout::Place>("INSX", limits.maxInstances)));
+        if (records.places.size() != records.instances.size())
+            return container::failInSection(*exact, ErrorCode::BadStructure, "has not one entry an instance");
+    }
     if (sections.table.find("LAYR") != nullptr)
         PFVOX_CHECK(assign(records.layers, sections.readTable<layout::Layer>("LAYR", layout::kMaxLayers)));
     if (sections.table.find("CAMR") != nullptr)
@@ -99,7 +104,12 @@ Result<void> makeInfo(const InfoRecords& records, MemoryBudget& budget, AssetInf
     PFVOX_CHECK(budget.reserve(info.materials, records.materials.size()));
     for (const layout::Material& r : records.materials) info.materials.push_back(toMaterial(r, names));
     PFVOX_CHECK(budget.reserve(info.instances, records.instances.size()));
-    for (const layout::Instance& r : records.instances) info.instances.push_back(toInstance(r, names));
+    for (std::size_t i = 0; i < records.instances.size(); ++i) {
+        info.instances.push_back(toInstance(records.instances[i], names));
+        if (records.places.empty()) continue;
+        const auto& t = records.places[i].translation;
+        info.instances.back().worldFromModel[3] = {t[0], t[1], t[2]};
+    }
     PFVOX_CHECK(budget.reserve(info.layers, records.layers.size()));
     for (const layout::Layer& r : records.layers)
         info.layers.push_back({.name = names.at(r.name), .hidden = (r.flags & layout::kLayerHidden) != 0});

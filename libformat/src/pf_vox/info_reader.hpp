@@ -1,4 +1,4 @@
-// InfoReader: the sections beside the octrees: MATL, INST, LAYR, CAMR, META and NAME.
+// InfoReader: the sections beside the octrees: MATL, INST, INSX, LAYR, CAMR, META and NAME.
 #pragma once
 
 #include <pfvox/asset.hpp>
@@ -14,6 +14,7 @@ struct InfoRecords {
     NamePool names;
     container::Array<layout::Material> materials;
     container::Array<layout::Instance> instances;
+    container::Array<layout::Place> places;  ///< empty, or one an instance
     container::Array<layout::Layer> layers;
     container::Array<layout::Camera> cameras;
     layout::Meta meta{};
@@ -22,6 +23,7 @@ struct InfoRecords {
     InfoTables tables() const {
         return {.materials = materials,
                 .instances = instances,
+                .places = places,
                 .layerCount = layers.size(),
                 .cameras = cameras,
                 .meta = meta};

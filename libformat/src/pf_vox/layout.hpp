@@ -72,6 +72,13 @@ struct Instance {
 inline constexpr std::uint32_t kInstanceHidden = 1u << 0;
 static_assert(sizeof(Instance) == 64);
 
+/// INSX, one an instance, where INST alone would move one of them by more than kPlaceSlack. Since 1.1.
+struct Place {
+    std::array<double, 3> translation;  ///< the last column of worldFromModel
+};
+static_assert(sizeof(Place) == 24);
+inline constexpr double kPlaceSlack = 1.0 / 4096.0;  ///< edges of a voxel
+
 /// LAYR
 struct Layer {
     std::uint32_t name;

@@ -25,6 +25,7 @@ constexpr std::array kMaterialRules{
     PFVOX_RULE(layout::Material, density, 0, kMaxFloat)};
 constexpr std::array kInstanceRules{PFVOX_RULE(layout::Instance, worldFromModel, -kMaxFloat, kMaxFloat),
                                     PFVOX_RULE(layout::Instance, layer, -1, kMaxInt)};
+constexpr std::array kPlaceRules{PFVOX_RULE(layout::Place, translation, -double{kMaxFloat}, kMaxFloat)};
 constexpr std::array kCameraRules{PFVOX_RULE(layout::Camera, position, -kMaxFloat, kMaxFloat),
                                   PFVOX_RULE(layout::Camera, target, -kMaxFloat, kMaxFloat),
                                   PFVOX_RULE(layout::Camera, fovYDegrees, 1, 179)};
@@ -155,6 +156,16 @@ bool checkInfo(const InfoTables& tables, const FaultSink& sink) {
             checker.check("INST", i,
                           fail(ErrorCode::BadReference,
                                fmt::format("lies on layer {} of {}", layer, tables.layerCount)));
+    }
+    checker.checkAll("INSX", tables.places, kPlaceRules);
+    for (std::size_t i = 0; i < tables.places.size() && checker.goesOn(); ++i) {
+        for (std::size_t row = 0; row < 3; ++row) {
+            if (static_cast<float>(tables.places[i].translation[row]) ==
+                tables.instances[i].worldFromModel[4 * row + 3])
+                continue;
+            checker.check("INSX", i, fail(ErrorCode::BadStructure, "is not the place of its instance"));
+            break;
+        }
     }
     checker.checkAll("CAMR", tables.cameras, kCameraRules);
     for (std::size_t i = 0; i < tables.cameras.size() && checker.goesOn(); ++i) {

@@ -15,10 +15,11 @@ namespace pfvox {
 /// checked, too.
 using FaultSink = std::function<bool(std::string_view fourcc, Error fault)>;
 
-/// MATL, INST, LAYR, CAMR and META.
+/// MATL, INST, INSX, LAYR, CAMR and META.
 struct InfoTables {
     std::span<const layout::Material> materials;
     std::span<const layout::Instance> instances;
+    std::span<const layout::Place> places;  ///< empty, or one an instance
     std::size_t layerCount = 0;
     std::span<const layout::Camera> cameras;
     layout::Meta meta{};
@@ -30,7 +31,8 @@ struct ModelTables {
     std::span<const std::uint16_t> palettes;
 };
 
-/// The domains of all fields, and layers that exist. Faults: BadValue, BadReference.
+/// The domains of all fields, layers that exist, and exact places that are those of the instances. Faults:
+/// BadValue, BadReference.
 bool checkInfo(const InfoTables& tables, const FaultSink& sink);
 
 /// The domains of all fields; that the regions of the models follow each other, lie where the models say and

@@ -10,8 +10,8 @@
 
 namespace pfvox {
 
-inline constexpr std::array<std::string_view, 11> kWholeFileSections{
-    "MATL", "MODL", "REGN", "TOPT", "TOPN", "PALT", "INST", "NAME", "META", "LAYR", "CAMR"};
+inline constexpr std::array<std::string_view, 12> kWholeFileSections{
+    "MATL", "MODL", "REGN", "TOPT", "TOPN", "PALT", "INST", "INSX", "NAME", "META", "LAYR", "CAMR"};
 /// The sections that belong to one region, in the order of kRegionSections: first those of a packed file,
 /// then those of a resident one.
 enum class RegionPart : std::uint8_t { Masks, Values, Lod, Nodes, Lookup, FarTable, ValueBytes, LodWords };
