@@ -8,9 +8,9 @@
 #include <algorithm>
 #include <map>
 #include <mutex>
+#include <pfvox/octree_walk.hpp>
 
 #include "container/findings.hpp"
-#include "octree/leaves.hpp"
 #include "pf_vox/info_reader.hpp"
 #include "pf_vox/region_reader.hpp"
 #include "pf_vox/top_tree_reader.hpp"
@@ -57,10 +57,9 @@ Result<OctreeModel> modelFromRecord(const layout::Model& record, const NamePool&
 Result<void> checkContent(const OctreeRegion& region) {
     std::uint64_t count = 0;
     VoxelBox bounds;
-    forEachLeaf(region, [&](glm::ivec3 corner, std::uint32_t edgeLog2, MaterialIndex) {
-        const glm::ivec3 least = region.originVoxels + corner;
-        count += std::uint64_t{1} << (3 * edgeLog2);
-        bounds.include({least, least + (1 << edgeLog2)});
+    forEachLeaf(region, [&](const Leaf& leaf) {
+        count += std::uint64_t{1} << (3 * leaf.edgeLog2);
+        bounds.include({leaf.corner, leaf.corner + leaf.edge()});
     });
     if (count != region.voxelCount) {
         return fail(ErrorCode::BadStructure,

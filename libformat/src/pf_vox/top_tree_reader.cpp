@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <limits>
+#include <pfvox/octree_walk.hpp>
 
 #include "octree/plane_linker.hpp"
 #include "octree/tree_check.hpp"
@@ -28,24 +29,19 @@ Result<Array<glm::i64vec3>> topLeafOrigins(const OctreeModel& model, std::size_t
     level[0] = model.topTree.depth;
     std::size_t leaves = 0;
     for (std::uint32_t i = 0; i < nodes.size(); ++i) {
-        const std::uint32_t d = nodes[i];
         const std::uint32_t childLevel = level[i] - 1;
-        std::uint32_t child = node::innerMask(d) != 0 ? model.topTree.firstChild(i) : 0;
-        for (std::uint32_t slot = 0; slot < 8; ++slot) {
-            if (((node::validMask(d) >> slot) & 1u) == 0) continue;
+        forEachChild(model.topTree, i, [&](const NodeChild& child) {
             const glm::i64vec3 at =
-                corner[i] + glm::i64vec3{mortonDecode(slot)} *
+                corner[i] + glm::i64vec3{cornerOfSlot(child.slot)} *
                                 (std::int64_t{1} << (childLevel + layout::kMaxRegionDepth));
-            if (((node::leafMask(d) >> slot) & 1u) == 0) {
-                corner[child] = at;
-                level[child++] = childLevel;
-            } else if (leaves == leafCount) {
-                return fail(ErrorCode::BadStructure, fmt::format("more leaves than {} regions", leafCount));
-            } else {
+            if (!child.isLeaf) {
+                corner[child.index] = at;
+                level[child.index] = childLevel;
+            } else if (leaves++ < leafCount) {
                 // A leaf above the last level would be larger than a region.
-                origins[leaves++] = childLevel == 0 ? at : glm::i64vec3{kNoOrigin};
+                origins[leaves - 1] = childLevel == 0 ? at : glm::i64vec3{kNoOrigin};
             }
-        }
+        });
     }
     if (leaves != leafCount)
         return fail(ErrorCode::BadStructure, fmt::format("{} leaves for {} regions", leaves, leafCount));
