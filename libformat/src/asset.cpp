@@ -32,11 +32,11 @@ Material quantised(const Material& material) {
     const auto unorm16 = [](float v) { return std::round(std::clamp(v, 0.0f, 1.0f) * 65535.0f) / 65535.0f; };
     const auto snorm16 = [](float v) { return std::round(std::clamp(v, -1.0f, 1.0f) * 32767.0f) / 32767.0f; };
     Material q = material;
-    q.metalness = unorm16(q.metalness);
-    q.roughness = unorm16(q.roughness);
-    q.specular = unorm16(q.specular);
-    q.transparency = unorm16(q.transparency);
-    q.phase = snorm16(q.phase);
+    for (const MaterialField& field : kMaterialFields) {
+        float& value = q.*field.value;
+        if (field.precision == Precision::Unorm16) value = unorm16(value);
+        if (field.precision == Precision::Snorm16) value = snorm16(value);
+    }
     return q;
 }
 
@@ -93,9 +93,11 @@ void compactMaterials(VoxelAsset& asset) {
     });
 
     const auto key = [](const Material& m) {
-        return std::make_tuple(m.baseColor.x, m.baseColor.y, m.baseColor.z, m.baseColor.w, m.type,
-                               m.metalness, m.roughness, m.specular, m.indexOfRefraction, m.emissionStrength,
-                               m.transparency, m.density, m.phase, m.name);
+        std::array<float, kMaterialFields.size()> numbers;
+        std::ranges::transform(kMaterialFields, numbers.begin(),
+                               [&](const MaterialField& field) { return m.*field.value; });
+        return std::make_tuple(m.baseColor.x, m.baseColor.y, m.baseColor.z, m.baseColor.w, m.type, numbers,
+                               m.name);
     };
     std::map<decltype(key(Material{})), MaterialIndex> known;
     std::vector<Material> kept;

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include <pfvox/voxel_model.hpp>
 
 #include "support/voxel_models.hpp"
@@ -51,6 +53,20 @@ TEST(Quantised, IsItsOwnFixedPoint) {
         EXPECT_NEAR(once.metalness, v, 1.0f / 65535.0f);
         EXPECT_NEAR(once.phase, 2 * v - 1, 1.0f / 32767.0f);
     }
+}
+
+// Does not compile where a property was added: then it is missing in the table, too, and in all that is made
+// of it.
+TEST(MaterialFields, TheTableHasEveryNumber) {
+    Material m;
+    auto& [color, type, a, b, c, d, e, f, g, h, name] = m;
+    std::set<const float*> numbers{&a, &b, &c, &d, &e, &f, &g, &h};
+    for (const MaterialField& field : kMaterialFields)
+        EXPECT_EQ(numbers.erase(&(m.*field.value)), 1u) << field.name;
+    EXPECT_TRUE(numbers.empty());
+    EXPECT_EQ(color.a, 255);
+    EXPECT_EQ(type, MaterialType::Diffuse);
+    EXPECT_EQ(name, Name{});
 }
 
 }  // namespace

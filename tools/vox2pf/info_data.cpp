@@ -58,12 +58,7 @@ Json materialJson(const Material& material, std::uint64_t voxels) {
     json["name"] = material.name;
     json["type"] = toString(material.type);
     json["baseColor"] = {color.r, color.g, color.b, color.a};
-    json["metalness"] = material.metalness;
-    json["roughness"] = material.roughness;
-    json["specular"] = material.specular;
-    json["indexOfRefraction"] = material.indexOfRefraction;
-    json["emissionStrength"] = material.emissionStrength;
-    json["transparency"] = material.transparency;
+    for (const MaterialField& field : kMaterialFields) json[std::string(field.name)] = material.*field.value;
     json["voxels"] = voxels;
     return json;
 }

@@ -52,9 +52,7 @@ class Hasher {
 
 void addMaterial(Hasher& hasher, const Material& m) {
     hasher.add(m.baseColor).add(static_cast<std::uint8_t>(m.type));
-    for (const float value : {m.metalness, m.roughness, m.specular, m.indexOfRefraction, m.emissionStrength,
-                              m.transparency, m.density, m.phase})
-        hasher.add(value);
+    for (const MaterialField& field : kMaterialFields) hasher.add(m.*field.value);
 }
 
 void addModel(Hasher& hasher, const OctreeModel& model) {

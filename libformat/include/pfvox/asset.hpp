@@ -5,10 +5,12 @@
 // (pfvox/octree.hpp), made by the builder and by the PF_VOX decoder.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <pfvox/math.hpp>
 #include <pfvox/name.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace pfvox {
@@ -44,6 +46,27 @@ struct Material {
 
     bool operator==(const Material&) const = default;
 };
+/// What a PF_VOX file keeps of a number.
+enum class Precision : std::uint8_t { Unorm16, Snorm16, Float };
+
+/// A number of a material in every form in which somebody meets it. Equality of materials, rounding, content
+/// hashes, JSON and the metadata of OpenVDB files come from this table.
+struct MaterialField {
+    std::string_view name;  ///< in JSON
+    std::string_view key;   ///< in metadata of .vdb files
+    float Material::*value;
+    Precision precision;
+};
+inline constexpr std::array kMaterialFields{
+    MaterialField{"metalness", "metalness", &Material::metalness, Precision::Unorm16},
+    MaterialField{"roughness", "roughness", &Material::roughness, Precision::Unorm16},
+    MaterialField{"specular", "specular", &Material::specular, Precision::Unorm16},
+    MaterialField{"indexOfRefraction", "ior", &Material::indexOfRefraction, Precision::Float},
+    MaterialField{"emissionStrength", "emission", &Material::emissionStrength, Precision::Float},
+    MaterialField{"transparency", "transparency", &Material::transparency, Precision::Unorm16},
+    MaterialField{"density", "density", &Material::density, Precision::Float},
+    MaterialField{"phase", "phase", &Material::phase, Precision::Snorm16}};
+
 /// Rounded to what a PF_VOX file can hold.
 Material quantised(const Material& material);
 

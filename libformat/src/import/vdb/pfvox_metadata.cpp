@@ -13,19 +13,6 @@ namespace {
 /// As many as a MaterialIndex tells apart.
 constexpr std::size_t kMaxMaterials = 65536;
 
-struct FloatField {
-    std::string_view key;
-    float Material::*member;
-};
-constexpr std::array<FloatField, 8> kFloatFields{{{"metalness", &Material::metalness},
-                                                  {"roughness", &Material::roughness},
-                                                  {"specular", &Material::specular},
-                                                  {"ior", &Material::indexOfRefraction},
-                                                  {"emission", &Material::emissionStrength},
-                                                  {"transparency", &Material::transparency},
-                                                  {"density", &Material::density},
-                                                  {"phase", &Material::phase}}};
-
 constexpr std::array kTypes{MaterialType::Diffuse, MaterialType::Metal,   MaterialType::Glass,
                             MaterialType::Emit,    MaterialType::Plastic, MaterialType::Blend,
                             MaterialType::Media};
@@ -83,11 +70,11 @@ bool parseType(std::string_view text, MaterialType& type) {
 bool parseField(std::string_view key, std::string_view value, Material& material) {
     if (key == "color") return parseColor(value, material.baseColor);
     if (key == "type") return parseType(value, material.type);
-    for (const FloatField& field : kFloatFields) {
+    for (const MaterialField& field : kMaterialFields) {
         if (key != field.key) continue;
         float number = 0.0f;
         if (!parseNumber(value, number) || !std::isfinite(number)) return false;
-        material.*field.member = number;
+        material.*field.value = number;
     }
     return true;
 }
@@ -124,9 +111,9 @@ std::string materialTable(const MaterialTable& materials) {
         const glm::u8vec4 c = m.baseColor;
         table += fmt::format("{} color=#{:02x}{:02x}{:02x}{:02x}", label, c.r, c.g, c.b, c.a);
         if (m.type != defaults.type) table += fmt::format(" type={}", toString(m.type));
-        for (const FloatField& field : kFloatFields) {
-            if (m.*field.member != defaults.*field.member) {
-                table += fmt::format(" {}={}", field.key, m.*field.member);
+        for (const MaterialField& field : kMaterialFields) {
+            if (m.*field.value != defaults.*field.value) {
+                table += fmt::format(" {}={}", field.key, m.*field.value);
             }
         }
         if (!m.name.empty()) table += fmt::format(" name={}", escaped(m.name));
