@@ -59,7 +59,7 @@ layout::Instance toLayout(const Instance& instance, NameTable& names) {
 /// Whether a float of its own moves the instance too far.
 bool needsExactPlace(const Affine& m) {
     const double voxel = std::min({glm::length(m[0]), glm::length(m[1]), glm::length(m[2])});
-    const glm::dvec3 rounded(glm::vec3(m[3]));
+    const glm::dvec3 rounded{glm::vec3{m[3]}};
     return glm::any(glm::greaterThan(glm::abs(m[3] - rounded), glm::dvec3(layout::kPlaceSlack * voxel)));
 }
 
