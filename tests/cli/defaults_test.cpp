@@ -35,6 +35,8 @@ const std::vector<Row>& rows() {
     static const std::vector<Row> all{
         {"vox2pf", "", "--jobs"},
         {"vox2pf", "", "--color"},
+        {"vox2pf", "convert", "--merge"},
+        {"vox2pf", "convert", "--include-hidden"},
         {"vox2pf", "convert", "--frame"},
         {"vox2pf", "convert", "--voxel-size", {"--voxel-size", "0.1"}},
         {"vox2pf", "convert", "--svx-threshold"},
@@ -42,6 +44,7 @@ const std::vector<Row>& rows() {
         {"vox2pf", "convert", "--vdb-up"},
         {"vox2pf", "convert", "--hollow"},
         {"vox2pf", "convert", "--lod"},
+        {"vox2pf", "convert", "--zstd-level"},
         {"vox2pf", "convert", "--profile"},
         {"vox2pf", "export", "--format", {"--format", "vox"}},
         {"probe-bake", "", "--jobs"},
