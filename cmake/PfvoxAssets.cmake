@@ -23,7 +23,7 @@
 # pfvox_copy_vdb_module(<target>)  puts OpenVDB support beside a program that links pfvox::import
 #
 # Properties of the targets: PFVOX_OUTPUTS (absolute paths of what is made), PFVOX_OUTPUT_DIR, PFVOX_BASE_DIR and
-# PFVOX_SOURCES; of a bake also PFVOX_SCENE, the scene that is baked. Of these functions, all is well where nothing is printed.
+# PFVOX_SOURCES; of a bake also PFVOX_SCENE, the scene that is baked. When all is well, nothing is printed.
 cmake_policy(PUSH)
 cmake_policy(VERSION 3.25) # functions keep the policies under which they were defined
 include(${CMAKE_CURRENT_LIST_DIR}/PfvoxAssetNames.cmake)

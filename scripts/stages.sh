@@ -100,10 +100,15 @@ check_changes() {
     return 0
   fi
   local files
-  mapfile -t files < <(git diff --name-only --diff-filter=d "$base" -- '*.cpp' | grep -E '^(libformat|libbake|tools|viewer)/')
+  mapfile -t files < <(git diff --numstat --diff-filter=d --no-renames "$base" -- '*.cpp' | sort -rn | cut -f 3 |
+    grep -E '^(libformat|libbake|tools|viewer)/')
   if [ ${#files[@]} -eq 0 ]; then
     echo "no source changed since ${base:0:12}"
     return 0
+  fi
+  if [ "$extent" = --ci ] && [ ${#files[@]} -gt 30 ]; then
+    echo "of ${#files[@]} sources that changed, the 30 with most new lines; scripts/test --all looks at each"
+    files=("${files[@]:0:30}")
   fi
   configure_clang || return
   printf '%s\0' "${files[@]}" | xargs -0 -n 1 -P "$jobs" clang-tidy --quiet -p build/clang --warnings-as-errors='*' 2>/dev/null # counts of what it keeps back

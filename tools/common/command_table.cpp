@@ -76,7 +76,8 @@ void sortByGroup(std::vector<OptionRow>& options) {
     for (const OptionRow& option : options) {
         if (std::ranges::find(groups, option.group) == groups.end()) groups.push_back(option.group);
     }
-    std::ranges::stable_partition(groups, [](const std::string& name) { return name != group::kGeneral; });
+    std::stable_partition(groups.begin(), groups.end(),
+                          [](const std::string& name) { return name != group::kGeneral; });
     std::ranges::stable_sort(options, {}, [&](const OptionRow& option) {
         return std::ranges::find(groups, option.group) - groups.begin();
     });

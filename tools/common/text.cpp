@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <pfvox/text_encoding.hpp>
 #include <vector>
 
@@ -43,7 +44,7 @@ std::string plural(std::uint64_t count, std::string_view singular) {
 
 std::string formatDuration(double seconds) {
     if (seconds < 60.0) return fmt::format("{:.2f} s", seconds);
-    const auto whole = static_cast<std::uint64_t>(seconds + 0.5);
+    const auto whole = static_cast<std::uint64_t>(std::llround(seconds));
     return fmt::format("{} min {:02} s", whole / 60, whole % 60);
 }
 

@@ -191,6 +191,7 @@ std::vector<AssetTask> makeTasks(const std::vector<InputOutput>& pairs, const Se
     SettingsPatch commandLine = options.patch;
     if (options.archive) commandLine.give("zstdLevel", commandLine.values.zstdLevel, kArchiveZstdLevel);
     std::vector<AssetTask> tasks;
+    tasks.reserve(pairs.size());
     for (const InputOutput& pair : pairs) {
         tasks.push_back({.source = pair.input.file,
                          .output = pair.output,

@@ -28,8 +28,9 @@ std::string placeText(const toml::source_region& place) {
 
 void TomlFields::readTable(const toml::table& table, std::string_view title, const Known& known) {
     for (const auto& [key, node] : table) {
+        const std::string_view word = key.str();  // clang 14 captures no structured binding
         const auto reader =
-            std::ranges::find_if(known, [&](const auto& entry) { return entry.first == key.str(); });
+            std::ranges::find_if(known, [&](const auto& entry) { return entry.first == word; });
         if (reader != known.end()) {
             reader->second(node);
             continue;

@@ -88,7 +88,7 @@ openvdb::GridBase::Ptr VdbReader::read(std::size_t index) {
     const GridDescriptor& ours = header_.grids.at(index);
     stream_->seek(ours.descriptorPos);
     openvdb::io::GridDescriptor descriptor;
-    const openvdb::GridBase::Ptr grid = stream_->readDescriptor(descriptor);
+    openvdb::GridBase::Ptr grid = stream_->readDescriptor(descriptor);
     stream_->seek(ours.gridPos);
     stream_->readGrid(grid, descriptor);
     return grid;
