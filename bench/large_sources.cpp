@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <fstream>
+#include <glm/glm.hpp>
 #include <span>
 #include <string>
 #include <vector>
