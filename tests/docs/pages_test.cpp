@@ -167,7 +167,8 @@ TEST_F(Completion, BashOffersCommandsOptionsAndFilesOfTheRightKind) {
     EXPECT_THAT(bash({"vox2pf", "a.vox", "--settings", ""}), UnorderedElementsAre("assets", "scene.toml"));
     EXPECT_THAT(bash({"vox2pf", "convert", "a.vox", "--hol"}), UnorderedElementsAre("--hollow"));
     EXPECT_THAT(bash({"vox2pf", "convert", "a.vox", "--no-"}),
-                UnorderedElementsAre("--no-hollow", "--no-lod", "--no-clobber"));
+                UnorderedElementsAre("--no-hollow", "--no-merge", "--no-include-hidden", "--no-summary",
+                                     "--no-lod", "--no-clobber"));
 }
 
 TEST_F(Completion, BashOffersValuesThatAreKnownWords) {

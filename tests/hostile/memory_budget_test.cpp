@@ -3,8 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <tbb/task_arena.h>
+#include <algorithm>
 
 #include <functional>
+#include <thread>
 
 #include "support/allocations.hpp"
 #include "support/container_formats.hpp"
@@ -78,6 +80,8 @@ TEST_P(MemoryBudget, SmallestLimitIsWhatReadingTakes) {
         files.push_back(
             encodePfProbe(test::probeField(test::probeInfo({8, 4, 4}, {64, 64, 8, 14})), {}).value());
     }
+    // What each thread keeps for itself, whatever a file says: contexts of the decompressor, queues of tasks.
+    const std::uint64_t slack = kMiB * std::max(2u, std::thread::hardware_concurrency());
     for (const Bytes& file : files) {
         const auto path = folder / "file";
         test::writeText(path, asText(file));
@@ -90,11 +94,11 @@ TEST_P(MemoryBudget, SmallestLimitIsWhatReadingTakes) {
         EXPECT_GT(enough, kMiB) << "too little to tell";
         const AllocationPeak peak;
         ASSERT_TRUE(GetParam()->load(path, {.maxMemoryBytes = enough}));
-        EXPECT_LT(peak.growthBytes(), enough + file.size() + kMiB / 4);
+        EXPECT_LT(peak.growthBytes(), enough + file.size() + slack);
         EXPECT_GT(peak.growthBytes(), enough / 4) << "far more is drawn than allocated";
         const AllocationPeak validating;
         EXPECT_THAT(GetParam()->validate(file, {.maxMemoryBytes = enough}), testing::IsEmpty());
-        EXPECT_LT(validating.growthBytes(), enough + kMiB / 4);
+        EXPECT_LT(validating.growthBytes(), enough + slack);
     }
 }
 

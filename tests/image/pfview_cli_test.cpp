@@ -60,7 +60,6 @@ TEST_F(PfviewCli, WrongUsageIsShortAndOnStderr) {
                                          picture + "--size 12",
                                          picture + "--camera 1,2,3",
                                          picture + "--camera 1,2,3,1,2,3",
-                                         picture + "--camera 1,2,3,nan,2,3",
                                          picture + "--camera 1,2,3,4,5,6,180",
                                          picture + "--view nothing",
                                          picture + "--samples 0",

@@ -129,19 +129,22 @@ void addInputs(CLI::App& command, InputWords& inputs, const std::vector<std::str
 }
 
 CLI::Option* addSwitch(CLI::App& command, const std::string& name, bool& value, const std::string& meaning) {
-    return command
-        .add_flag_function(
-            fmt::format("--{0},!--no-{0}", name), [&value](std::int64_t count) { value = count > 0; },
-            meaning)
-        ->check(showDefault((value ? "--" : "--no-") + name));
+    return addSwitch(
+        command, name, [&value](bool on) { value = on; }, meaning, (value ? "--" : "--no-") + name);
 }
 
 CLI::Option* addSwitch(CLI::App& command, const std::string& name, std::optional<bool>& value,
                        const std::string& meaning, const std::string& byDefault) {
+    return addSwitch(
+        command, name, [&value](bool on) { value = on; }, meaning, byDefault);
+}
+
+CLI::Option* addSwitch(CLI::App& command, const std::string& name, std::function<void(bool)> set,
+                       const std::string& meaning, const std::string& byDefault) {
     return command
         .add_flag_function(
-            fmt::format("--{0},!--no-{0}", name), [&value](std::int64_t count) { value = count > 0; },
-            meaning)
+            fmt::format("--{0},!--no-{0}", name),
+            [set = std::move(set)](std::int64_t count) { set(count > 0); }, meaning)
         ->check(showDefault(byDefault));
 }
 

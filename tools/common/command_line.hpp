@@ -60,6 +60,8 @@ CLI::Option* addSwitch(CLI::App& command, const std::string& name, bool& value, 
 /// The same where what holds without them is decided later; `byDefault` is shown.
 CLI::Option* addSwitch(CLI::App& command, const std::string& name, std::optional<bool>& value,
                        const std::string& meaning, const std::string& byDefault);
+CLI::Option* addSwitch(CLI::App& command, const std::string& name, std::function<void(bool)> set,
+                       const std::string& meaning, const std::string& byDefault);
 
 /// Options of every subcommand.
 struct CommonOptions {

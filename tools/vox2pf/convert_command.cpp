@@ -59,12 +59,10 @@ void addInputOutputOptions(CLI::App& command, ConvertOptions& options) {
 // One option of the table for a field of each type; what it holds without the option is shown in help.
 
 CLI::Option* addSetting(CLI::App& command, const ConvertSetting& setting, bool& field, SettingsPatch& patch) {
-    return command
-        .add_flag_function(
-            fmt::format("--{0},!--no-{0}", setting.option),
-            [&, setting](std::int64_t count) { patch.give(setting.key, field, count > 0); },
-            std::string(setting.meaning))
-        ->check(showDefault(fmt::format("--{}{}", field ? "" : "no-", setting.option)));
+    const std::string name(setting.option);
+    return addSwitch(
+        command, name, [&, key = setting.key](bool on) { patch.give(key, field, on); },
+        std::string(setting.meaning), (field ? "--" : "--no-") + name);
 }
 
 template <class T>
