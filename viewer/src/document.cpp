@@ -96,9 +96,9 @@ void Document::takeLoaded() {
     if (!loaded) return;
     Loading done = *std::exchange(loading_, std::nullopt);
     const std::string name = done.path.file.string();
-    if (*loaded) log_->dismissStrip();  // before: what is wrong with the probes is to stay
-    const Result<void> shown = *loaded ? show(std::move(done.path), **std::move(loaded), done.keepCamera)
-                                       : Result<void>(tl::make_unexpected(loaded->error()));
+    if (!*loaded) return log_->addError(describe(loaded->error()));
+    log_->dismissStrip();  // before: what is wrong with the probes is to stay
+    const Result<void> shown = show(std::move(done.path), **std::move(loaded), done.keepCamera);
     shown ? log_->add(MessageKind::Note, "shows " + name) : log_->addError(describe(shown.error()));
 }
 

@@ -4,21 +4,21 @@
 
 namespace pfvox::viewer {
 
-Session::Session(gpu::Device& device, const SessionStart& start, Memory memory, MessageLog& log,
+Session::Session(gpu::Device& device, const SessionStart& start, const Memory& memory, MessageLog& log,
                  FrameSequence frames, gpu::RayQuery query)
     : document(device, log, start.read, start.probes),
-      view(document, std::move(frames), std::move(query), start.camera, std::move(memory)),
+      view(document, std::move(frames), std::move(query), start.camera, memory),
       input(document, view, start.screenshotFolder) {
     view.mode = start.mode;
     view.atlas = start.atlas;
 }
 
 Result<std::unique_ptr<Session>> Session::create(gpu::Device& device, const SessionStart& start,
-                                                 Memory memory, MessageLog& log) {
+                                                 const Memory& memory, MessageLog& log) {
     PFVOX_TRY(FrameSequence, frames, FrameSequence::create(device));
     PFVOX_TRY(gpu::RayQuery, query, gpu::RayQuery::create(device));
     std::unique_ptr<Session> session(
-        new Session(device, start, std::move(memory), log, std::move(frames), std::move(query)));
+        new Session(device, start, memory, log, std::move(frames), std::move(query)));
     if (!start.path.empty()) session->document.open(start.path);
     return session;
 }

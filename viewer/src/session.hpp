@@ -24,7 +24,7 @@ class Session {
   public:
     /// Begins to load. Errors: those of the programs on the device.
     static Result<std::unique_ptr<Session>> create(gpu::Device& device, const SessionStart& start,
-                                                   Memory memory, MessageLog& log);
+                                                   const Memory& memory, MessageLog& log);
     /// As time passes.
     void update(double secondsSinceStart) {
         document.update(secondsSinceStart);
@@ -36,7 +36,7 @@ class Session {
     Input input;
 
   private:
-    Session(gpu::Device& device, const SessionStart& start, Memory memory, MessageLog& log,
+    Session(gpu::Device& device, const SessionStart& start, const Memory& memory, MessageLog& log,
             FrameSequence frames, gpu::RayQuery query);
 };
 

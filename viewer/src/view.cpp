@@ -41,13 +41,14 @@ fs::path freeScreenshotName(const fs::path& folder, const fs::path& file) {
 
 }  // namespace
 
-View::View(Document& document, FrameSequence frames, gpu::RayQuery query, CameraRequest first, Memory memory)
+View::View(Document& document, FrameSequence frames, gpu::RayQuery query, CameraRequest first,
+           const Memory& memory)
     : settings(memory.settings),
       document_(&document),
       frames_(std::move(frames)),
       query_(std::move(query)),
       first_(std::move(first)),
-      cameras_(std::move(memory.cameras)) {
+      cameras_(memory.cameras) {
     camera.mode = settings.cameraMode;
 }
 

@@ -22,7 +22,8 @@ namespace pfvox::viewer {
 class View {
   public:
     /// `first`: of the scene that is opened first.
-    View(Document& document, FrameSequence frames, gpu::RayQuery query, CameraRequest first, Memory memory);
+    View(Document& document, FrameSequence frames, gpu::RayQuery query, CameraRequest first,
+         const Memory& memory);
 
     /// Takes up what has changed in the document: another scene gets its camera, frames of what is gone are
     /// forgotten. The other functions that look at the document do so first.
