@@ -167,7 +167,7 @@ TEST_F(SessionProbesTest, AnotherFileIsOpenedWithoutWaitingForTheOneBefore) {
     reader.release();
     settle();
     EXPECT_TRUE(session->document.shown()->path.file.empty()) << "what comes too late is not shown";
-    session.reset();  // before its reader
+    endBackground();  // before its reader
 }
 
 }  // namespace

@@ -19,6 +19,7 @@ class SessionFixture : public PictureTest {
 
     void TearDown() override {
         session.reset();
+        endBackground();
         PictureTest::TearDown();
     }
     static VoxelAsset box(int edge, std::uint8_t red = 220) {
@@ -44,6 +45,11 @@ class SessionFixture : public PictureTest {
         session = *std::move(made);
         session->view.windowSize = glm::dvec2(kSize);
         settle();
+    }
+    /// Until no thread of any session reads: what the test owns may then go.
+    static void endBackground() {
+        for (int i = 0; i < 2000 && viewer::backgroundThreads() > 0; ++i)
+            std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
     bool isBusy() const { return session->document.isLoading() || session->document.composer.isReading(); }
     /// Lets a second pass, as far as the session can tell, and waits for what it reads.
