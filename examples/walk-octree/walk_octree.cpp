@@ -28,7 +28,7 @@ void walk(const pfvox::NodeTree& tree, std::uint32_t index, std::uint32_t level,
 }
 
 void printModel(const pfvox::OctreeAsset& asset, const pfvox::OctreeModel& model) {
-    std::printf("model \"%s\": %llu voxels, %zu regions, %u levels\n", model.name.c_str(),
+    std::printf("model \"%s\": %llu voxels, %zu regions, %u levels\n", model.name.str().c_str(),
                 static_cast<unsigned long long>(model.voxelCount), model.regions.size(), model.depth);
     std::map<std::uint32_t, Level> levels;
     for (const pfvox::OctreeRegion& region : model.regions) {
