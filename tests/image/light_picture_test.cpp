@@ -62,7 +62,7 @@ class LightPicture : public PictureTest {
 
 TEST_F(LightPicture, TheProbesBelongToTheHall) {
     EXPECT_TRUE(probes->ofThisScene)
-        << "the kept field is of another hall: PFVOX_UPDATE_GOLDEN=1 bakes it anew";
+        << "the kept field is of another hall: PFVOX_UPDATE_GOLDEN=1 bakes it again";
     EXPECT_EQ(probes->probes.size(), 24u);
     EXPECT_EQ(probes->info.resolution.depth, 64u);
 }

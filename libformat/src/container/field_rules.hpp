@@ -39,7 +39,7 @@ template <class Number, std::size_t kSize>
 inline constexpr std::size_t kNumbersOf<std::array<Number, kSize>> = kSize;
 }  // namespace detail
 
-/// A field of numbers, each from `least` to `most`; what is no number is never in a range.
+/// A field of numbers, each from `least` to `most`; NaN is in no range.
 template <auto kMember, class Record, class Field>
 constexpr FieldRule ruleOf(Field Record::*, std::string_view name, double least, double most) {
     return {name, &detail::numberAt<Record, kMember>, detail::kNumbersOf<Field>, least, most};

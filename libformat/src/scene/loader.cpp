@@ -45,7 +45,7 @@ std::string remedyFor(const fs::path& file) {
                            shellWord(fs::path(file).replace_extension(".pf_vox")));
     }
     return fmt::format(
-        "convert its source anew: vox2pf convert <source> -o {0}; a .pf_vox file of the program's "
+        "convert its source again: vox2pf convert <source> -o {0}; a .pf_vox file of the program's "
         "predecessor is a source, too: vox2pf convert {0} -o 'converted/'",
         shellWord(file));
 }
@@ -70,7 +70,7 @@ Result<std::shared_ptr<const OctreeAsset>> loadAsset(const fs::path& file, const
     } else if (error.code == ErrorCode::UnsupportedVersion) {
         error.message += " with this version of vox2pf";
     } else if (isDamage(error.code)) {
-        error.message += "; copy the file anew, or convert its source again";
+        error.message += "; copy the file again, or convert its source again";
     }
     return tl::make_unexpected(std::move(error));
 }

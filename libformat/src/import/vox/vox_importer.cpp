@@ -167,7 +167,7 @@ Result<VoxelAsset> importVox(const SourceBytes& source, const ImportSettings& se
         return fail(ErrorCode::UnsupportedFormat,
                     "this is a SLAB6 model (dense voxels, 6-bit palette), not a MagicaVoxel file, although "
                     "both are named "
-                    ".vox; open it in MagicaVoxel or SLAB6 and export it anew");
+                    ".vox; open it in MagicaVoxel or SLAB6 and export it again");
     }
     const double voxelSizeMetres = settings.voxelSizeMetres.value_or(kDefaultVoxelSizeMetres);
     if (!(voxelSizeMetres > 0.0) || !std::isfinite(voxelSizeMetres)) {
