@@ -330,7 +330,8 @@ TEST(ImportVdb, MaterialTablesOfOurOwnAreRestored) {
     EXPECT_EQ(restored.indexOfRefraction, 1.25f);
     EXPECT_EQ(restored.name, "a b=c\nd");
     EXPECT_EQ(good.result->materials.at(good.result->models[0].at({1, 0, 0}).value()).name, "9");
-    for (const char* bad : {"x color=#01020304\n", "3 color=#0102\n", "3 type=stone\n", "3 ior=nan\n"}) {
+    for (const char* bad : {"x color=#01020304\n", "3 color=#0102\n", "3 type=stone\n", "3 ior=nan\n",
+                            "3 ior=0.5\n", "3 emission=-5\n", "3 phase=2\n"}) {
         const Imported malformed = labelled(bad);
         ASSERT_TRUE(malformed.result) << malformed.errorText();
         EXPECT_TRUE(malformed.reported("vdb-materials-malformed")) << bad;

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <pfvox/math.hpp>
 #include <pfvox/name.hpp>
 #include <string>
@@ -56,16 +57,21 @@ struct MaterialField {
     std::string_view key;   ///< in metadata of .vdb files
     float Material::*value;
     Precision precision;
+    float least;
+    float most;
 };
 inline constexpr std::array kMaterialFields{
-    MaterialField{"metalness", "metalness", &Material::metalness, Precision::Unorm16},
-    MaterialField{"roughness", "roughness", &Material::roughness, Precision::Unorm16},
-    MaterialField{"specular", "specular", &Material::specular, Precision::Unorm16},
-    MaterialField{"indexOfRefraction", "ior", &Material::indexOfRefraction, Precision::Float},
-    MaterialField{"emissionStrength", "emission", &Material::emissionStrength, Precision::Float},
-    MaterialField{"transparency", "transparency", &Material::transparency, Precision::Unorm16},
-    MaterialField{"density", "density", &Material::density, Precision::Float},
-    MaterialField{"phase", "phase", &Material::phase, Precision::Snorm16}};
+    MaterialField{"metalness", "metalness", &Material::metalness, Precision::Unorm16, 0.0f, 1.0f},
+    MaterialField{"roughness", "roughness", &Material::roughness, Precision::Unorm16, 0.0f, 1.0f},
+    MaterialField{"specular", "specular", &Material::specular, Precision::Unorm16, 0.0f, 1.0f},
+    MaterialField{"indexOfRefraction", "ior", &Material::indexOfRefraction, Precision::Float, 1.0f,
+                  std::numeric_limits<float>::max()},
+    MaterialField{"emissionStrength", "emission", &Material::emissionStrength, Precision::Float, 0.0f,
+                  std::numeric_limits<float>::max()},
+    MaterialField{"transparency", "transparency", &Material::transparency, Precision::Unorm16, 0.0f, 1.0f},
+    MaterialField{"density", "density", &Material::density, Precision::Float, 0.0f,
+                  std::numeric_limits<float>::max()},
+    MaterialField{"phase", "phase", &Material::phase, Precision::Snorm16, -1.0f, 1.0f}};
 
 /// Rounded to what a PF_VOX file can hold.
 Material quantised(const Material& material);

@@ -73,7 +73,7 @@ bool parseField(std::string_view key, std::string_view value, Material& material
     for (const MaterialField& field : kMaterialFields) {
         if (key != field.key) continue;
         float number = 0.0f;
-        if (!parseNumber(value, number) || !std::isfinite(number)) return false;
+        if (!parseNumber(value, number) || !(number >= field.least && number <= field.most)) return false;
         material.*field.value = number;
     }
     return true;
