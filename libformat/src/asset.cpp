@@ -45,6 +45,12 @@ bool isOpaque(const Material& material) {
            material.transparency == 0.0f && material.baseColor.a == 255;
 }
 
+bool letsThrough(const Material& material) {
+    const bool glass = material.type == MaterialType::Glass || material.type == MaterialType::Media ||
+                       material.type == MaterialType::Blend;
+    return glass && material.transparency > 0.0f && material.emissionStrength == 0.0f;
+}
+
 bool isHidden(const AssetInfo& asset, const Instance& instance) {
     if (instance.hidden) return true;
     const auto layer = static_cast<std::size_t>(instance.layer);

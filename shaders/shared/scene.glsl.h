@@ -56,8 +56,8 @@ PFVOX_STRUCT(InstanceRecord) {
     vec4 cubeFromWorld2;
     uint model;
     uint id;  // position in the list of all instances of the scene, hidden ones counted
+    uint firstFace;  // number of its first value (shared/faces.glsl.h)
     uint reserved0;
-    uint reserved1;
 };
 PFVOX_SIZE(InstanceRecord, 64);
 PFVOX_OFFSET(InstanceRecord, model, 48);
@@ -73,8 +73,10 @@ PFVOX_STRUCT(ModelRecord) {
     uvec2 lods;          // LodRecord[], beside the nodes; 0 = none
     ivec3 originVoxels;  // lower corner of the cube
     uint reserved1;
+    uvec2 faceCells;     // uvec2[], beside the nodes (shared/faces.glsl.h); 0 = faces were not asked for
+    uvec2 faceSlots;     // uvec2[]: masks
 };
-PFVOX_SIZE(ModelRecord, 80);
+PFVOX_SIZE(ModelRecord, 96);
 PFVOX_OFFSET(ModelRecord, boxMax, 16);
 PFVOX_OFFSET(ModelRecord, nodes, 32);
 PFVOX_OFFSET(ModelRecord, originVoxels, 64);

@@ -140,7 +140,8 @@ TEST_F(SceneTest, AModelThatIsOnTheDeviceIsTakenFromThere) {
     parts[0].worldFromAsset[3] = {0, 0, -50};
     parts.push_back({.asset = &voxel});
     DiagnosticList diagnostics;
-    PFVOX_ASSERT_VALUE(gpu::Scene, second, gpu::Scene::build(device(), parts, diagnostics, &first));
+    PFVOX_ASSERT_VALUE(gpu::Scene, second,
+                       gpu::Scene::build(device(), parts, diagnostics, {.known = &first}));
     PFVOX_ASSERT_VALUE(const gpu::Scene, fresh, buildScene(parts));
     EXPECT_EQ(second.statistics().totalBytes(), fresh.statistics().totalBytes());
     EXPECT_EQ(second.statistics().voxels, fresh.statistics().voxels);
@@ -158,7 +159,8 @@ TEST_F(SceneTest, AModelThatIsOnTheDeviceIsTakenFromThere) {
     }
     // Its blocks live on when the scene they were made for is gone; and materials that move are written anew.
     std::swap(parts[0], parts[1]);
-    PFVOX_ASSERT_VALUE(gpu::Scene, third, gpu::Scene::build(device(), parts, diagnostics, &second));
+    PFVOX_ASSERT_VALUE(gpu::Scene, third,
+                       gpu::Scene::build(device(), parts, diagnostics, {.known = &second}));
     second = std::move(third);
     EXPECT_EQ(castOne(second, kDownZ).material, 0u);
     const gpu::GpuRay intoRoom{.origin = {3, 2, -10}, .direction = {0, 0, -1}};
@@ -173,10 +175,12 @@ TEST_F(SceneTest, OnlyTheTableIsNewWhenAModelMoves) {
     parts[0].worldFromAsset[3].x = 1.0;
     DiagnosticList diagnostics;
     for (int i = 0; i < 4; ++i) {  // staging memory grows at first and stays
-        PFVOX_ASSERT_VALUE(const gpu::Scene, warm, gpu::Scene::build(device(), parts, diagnostics, &first));
+        PFVOX_ASSERT_VALUE(const gpu::Scene, warm,
+                           gpu::Scene::build(device(), parts, diagnostics, {.known = &first}));
     }
     const std::uint64_t before = device().memory().currentBytes;
-    PFVOX_ASSERT_VALUE(const gpu::Scene, second, gpu::Scene::build(device(), parts, diagnostics, &first));
+    PFVOX_ASSERT_VALUE(const gpu::Scene, second,
+                       gpu::Scene::build(device(), parts, diagnostics, {.known = &first}));
     const std::uint64_t more = device().memory().currentBytes - before;
     EXPECT_LT(more, first.statistics().nodeBytes + first.statistics().instanceBytes);
     EXPECT_GE(more, second.statistics().instanceBytes);

@@ -127,7 +127,7 @@ class VerifyRun {
                   ProbeFileReader::open(options_.inputs[1], limits_, diagnostics));
         PFVOX_TRY(gpu::Device, device, gpu::Device::open({.selector = options_.device}));
         PFVOX_TRY(const gpu::Scene, scene,
-                  gpu::Scene::build(device, gpu::partsOf(loaded), diagnostics, nullptr, loaded.origin()));
+                  gpu::Scene::build(device, gpu::partsOf(loaded), diagnostics, {.origin = loaded.origin()}));
         PFVOX_TRY(const gpu::GpuProbes, probes,
                   gpu::GpuProbes::upload(device, reader,
                                          {.voxelMetres = voxelMetresOf(loaded),

@@ -104,7 +104,7 @@ void Document::takeLoaded() {
 
 Result<void> Document::show(OpenPath path, LoadedScene loaded, bool keepCamera) {
     PFVOX_TRY(gpu::Scene, scene,
-              gpu::Scene::build(*device_, gpu::partsOf(loaded), *log_, nullptr, loaded.origin()));
+              gpu::Scene::build(*device_, gpu::partsOf(loaded), *log_, {.origin = loaded.origin()}));
     if (!keepCamera) probes_.reset();
     emitters_.reset();
     std::vector<WorldBounds> boxes = assetBoxesOf(loaded);
@@ -195,7 +195,8 @@ Result<void> Document::rearrange(LoadedScene loaded) {
     const bool otherFiles = loaded.scene.models.size() != shown_->loaded.scene.models.size();
     if (!sameModels(loaded, shown_->loaded)) {
         PFVOX_TRY(gpu::Scene, scene,
-                  gpu::Scene::build(*device_, gpu::partsOf(loaded), *log_, &shown_->scene, loaded.origin()));
+                  gpu::Scene::build(*device_, gpu::partsOf(loaded), *log_,
+                                    {.known = &shown_->scene, .origin = loaded.origin()}));
         shown_->scene = std::move(scene);
         emitters_.reset();
         ++revisions_.pixels;

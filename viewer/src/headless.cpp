@@ -195,7 +195,7 @@ Result<void> runHeadless(const Options& options, Diagnostics& diagnostics) {
     PFVOX_TRY(gpu::Device, device,
               gpu::Device::open({.selector = options.device, .validation = options.validation}));
     PFVOX_TRY(const gpu::Scene, scene,
-              gpu::Scene::build(device, gpu::partsOf(loaded), diagnostics, nullptr, loaded.origin()));
+              gpu::Scene::build(device, gpu::partsOf(loaded), diagnostics, {.origin = loaded.origin()}));
     PFVOX_TRY(const std::optional<ShownProbes>, probes,
               findProbes(device, request, loaded, path.file, diagnostics));
     const ShownProbes* const light = probes ? &*probes : nullptr;

@@ -9,6 +9,7 @@
 
 #include <memory>
 #include <pfvox/error.hpp>
+#include <pfvox/face_index.hpp>
 #include <pfvox/gpu.hpp>
 #include <pfvox/math.hpp>
 #include <pfvox/octree.hpp>
@@ -17,6 +18,11 @@
 #include <vector>
 
 namespace pfvox::gpu {
+
+namespace detail {
+struct FaceTable;
+struct SceneRecords;
+}  // namespace detail
 
 /// One asset and where it stands. All its visible instances take part.
 struct ScenePart {
@@ -46,13 +52,38 @@ struct SceneStatistics {
     std::uint64_t lodBytes = 0;
     std::uint64_t valueBytes = 0;
     std::uint64_t paletteBytes = 0;
+    std::uint64_t faceBytes = 0;  ///< of the models' face indices
     std::uint64_t instanceBytes = 0;
     bool hasGlass = false;    ///< materials that let light through
     bool hasMirrors = false;  ///< materials that mirror: metal and plastic
     double buildMs = 0.0;     ///< CPU time of layout, BVH and upload
     std::uint64_t totalBytes() const {
-        return nodeBytes + lodBytes + valueBytes + paletteBytes + instanceBytes;
+        return nodeBytes + lodBytes + valueBytes + paletteBytes + faceBytes + instanceBytes;
     }
+};
+
+class Scene;
+
+/// How a scene is built.
+struct SceneOptions {
+    /// Models that it has on this device are shared with it instead of laid out and uploaded again, as long
+    /// as their materials begin at the same place of the scene's list: moving, adding and copying cost
+    /// instances and BVH only. The assets that it was built from must still be there.
+    const Scene* known = nullptr;
+    /// Of the frame that the device counts in (LoadedScene::origin), so that voxels far away from the world's
+    /// are told apart: whoever uploads positions subtracts it in double precision first.
+    glm::dvec3 origin{0.0};
+    bool faces = false;  ///< number the faces of the models, for light on them (pfvox/face_index.hpp)
+};
+
+/// Faces of one instance, and where their values stand in the list of all.
+struct PlacedFaces {
+    std::uint32_t instance = 0;  ///< its record on the device
+    std::uint32_t firstFace = 0;
+    const OctreeModel* model = nullptr;
+    const FaceIndex* index = nullptr;          ///< lives as long as the scene
+    Affine frameFromModel = identityAffine();  ///< voxels to meters, from the scene's origin
+    std::shared_ptr<const detail::FaceTable> table;
 };
 
 /// Immutable once built. Keeps its device alive; does not keep the assets.
@@ -62,15 +93,8 @@ class Scene {
     /// model are left out; one whose transform cannot be inverted too, with the diagnostic
     /// "scene-flat-instance". Errors: BadReference (instance of a model that does not exist),
     /// UnsupportedFeature (octree deeper than 23 levels), GpuOutOfMemory, GpuLost.
-    ///
-    /// Models that `known` has on this device are shared with it instead of laid out and uploaded again, as
-    /// long as their materials begin at the same place of the scene's list: moving, adding and copying cost
-    /// instances and BVH only. The assets that `known` was built from must still be there.
-    ///
-    /// What is on the device counts from `origin` (LoadedScene::origin), so that voxels far away from the
-    /// world's are told apart: whoever uploads positions subtracts it in double precision first.
     static Result<Scene> build(Device& device, std::span<const ScenePart> parts, Diagnostics& diagnostics,
-                               const Scene* known = nullptr, const glm::dvec3& origin = glm::dvec3(0.0));
+                               const SceneOptions& options = {});
 
     /// Device address of the shared::SceneHeader.
     glm::uvec2 address() const { return table_.addressWords(); }
@@ -79,11 +103,16 @@ class Scene {
     /// As the device counts.
     glm::vec3 onDevice(const glm::dvec3& world) const { return glm::vec3(world - origin_); }
     const SceneStatistics& statistics() const { return statistics_; }
+    /// In the order of instances; empty unless faces were asked for.
+    const std::vector<PlacedFaces>& faces() const { return faces_; }
+    std::uint32_t faceCount() const { return faceCount_; }  ///< of all instances
 
   private:
     struct PlacedModel;
     using PlacedModels = std::vector<std::shared_ptr<const PlacedModel>>;
     class ModelPlacer;
+    static std::uint64_t numberFaces(detail::SceneRecords& records, const PlacedModels& placed,
+                                     std::vector<PlacedFaces>& faces);
     Scene(Buffer table, PlacedModels models) : table_(std::move(table)), models_(std::move(models)) {}
 
     Buffer table_;         ///< header, BVH, instances, models, materials
@@ -91,6 +120,8 @@ class Scene {
     WorldBox bounds_;
     glm::dvec3 origin_{0.0};
     SceneStatistics statistics_;
+    std::vector<PlacedFaces> faces_;
+    std::uint32_t faceCount_ = 0;
 };
 
 }  // namespace pfvox::gpu

@@ -59,8 +59,9 @@ class Baker {
         warnAboutGrid();
         const EmitterList emitters = makeEmitters(models_);
         report_.emitterFaces = emitters.faces.size();
-        PFVOX_TRY(const gpu::Scene, gpuScene,
-                  gpu::Scene::build(device_, gpu::partsOf(scene_), diagnostics_, nullptr, scene_.origin()));
+        PFVOX_TRY(
+            const gpu::Scene, gpuScene,
+            gpu::Scene::build(device_, gpu::partsOf(scene_), diagnostics_, {.origin = scene_.origin()}));
         PFVOX_TRY(ProbeTracer, tracer,
                   ProbeTracer::create(device_, gpuScene,
                                       {.sun = scene_.scene.sun,
@@ -96,10 +97,7 @@ class Baker {
     bool hasGlass() const {
         for (const PlacedModel& placed : models_)
             for (const Material& m : placed.asset->materials)
-                if ((m.type == MaterialType::Glass || m.type == MaterialType::Media ||
-                     m.type == MaterialType::Blend) &&
-                    m.transparency > 0.0f && m.emissionStrength == 0.0f)
-                    return true;
+                if (letsThrough(m)) return true;
         return false;
     }
 

@@ -1,8 +1,10 @@
 #include <algorithm>
 #include <chrono>
 #include <map>
+#include <numeric>
 #include <pfvox/gpu_scene.hpp>
 
+#include "scene/face_table.hpp"
 #include "scene/scene_records.hpp"
 #include "scene/wide_tree.hpp"
 
@@ -63,19 +65,32 @@ struct WideModel {
     std::uint64_t lodsAt = 0;
     std::uint64_t valuesAt = 0;
     std::uint64_t palettesAt = 0;
+    std::shared_ptr<const FaceTable> faces{};
+    std::uint64_t faceCellsAt = 0;
+    std::uint64_t faceSlotsAt = 0;
 };
 
 constexpr std::uint64_t padded(std::uint64_t sizeBytes) {
     return (sizeBytes + 63) / 64 * 64;
 }
 
-Result<WideModel> layOut(std::size_t index, const UsedModel& used, BlockArena& arena) {
+Result<WideModel> layOut(std::size_t index, const UsedModel& used, bool withFaces, BlockArena& arena) {
     PFVOX_TRY(WideTree, tree, widen(*used.model, used.firstMaterial));
     WideModel model{.index = index, .tree = std::move(tree), .place = {}};
+    if (withFaces) {
+        PFVOX_TRY(FaceIndex, faces, makeFaceIndex(*used.model, *used.materials));
+        PFVOX_TRY(FaceTable, table, makeFaceTable(*used.model, model.tree, std::move(faces)));
+        model.faces = std::make_shared<const FaceTable>(std::move(table));
+    }
     model.lodsAt = padded(model.tree.nodeBytes());
     model.valuesAt = model.lodsAt + padded(model.tree.lodBytes());
     model.palettesAt = model.valuesAt + padded(model.tree.valueBytes());
-    PFVOX_TRY(const BlockPlace, place, arena.add(model.palettesAt + padded(model.tree.paletteBytes())));
+    model.faceCellsAt = model.palettesAt + padded(model.tree.paletteBytes());
+    model.faceSlotsAt =
+        model.faceCellsAt + (model.faces ? padded(sizeof(glm::uvec2) * model.faces->cells.size()) : 0);
+    const std::uint64_t end =
+        model.faceSlotsAt + (model.faces ? padded(sizeof(glm::uvec2) * model.faces->slots.size()) : 0);
+    PFVOX_TRY(const BlockPlace, place, arena.add(end));
     model.place = place;
     return model;
 }
@@ -102,25 +117,18 @@ Result<shared::ModelRecord> uploadModel(Device& device, const UsedModel& used, c
     if (model.tree.hasLods) record.lods = buffer.addressWords(start + model.lodsAt);
     record.values = buffer.addressWords(start + model.valuesAt);
     record.palettes = buffer.addressWords(start + model.palettesAt);
+    if (model.faces) {
+        PFVOX_CHECK(put(model.faces->cells, model.faceCellsAt));
+        PFVOX_CHECK(put(model.faces->slots, model.faceSlotsAt));
+        record.faceCells = buffer.addressWords(start + model.faceCellsAt);
+        record.faceSlots = buffer.addressWords(start + model.faceSlotsAt);
+    }
     return record;
 }
 
 template <class T>
 std::uint64_t paddedBytes(const std::vector<T>& items) {
     return (items.size() * sizeof(T) + 63) / 64 * 64;
-}
-
-/// As shaders/material.glsl says.
-bool letsThrough(const shared::MaterialRecord& material) {
-    const auto type = static_cast<MaterialType>(material.type);
-    const bool glass =
-        type == MaterialType::Glass || type == MaterialType::Media || type == MaterialType::Blend;
-    return glass && material.transparency > 0.0f && material.emissionStrength == 0.0f;
-}
-bool mirrors(const shared::MaterialRecord& material) {
-    const auto type = static_cast<MaterialType>(material.type);
-    const bool metal = type == MaterialType::Metal && material.metalness > 0.0f;
-    return (metal || type == MaterialType::Plastic) && material.emissionStrength == 0.0f;
 }
 
 /// Header, BVH, instances, models and materials, one after the other in one buffer.
@@ -163,6 +171,7 @@ std::vector<ScenePart> partsOf(const LoadedScene& scene) {
 struct Scene::PlacedModel {
     UsedModel used;
     shared::ModelRecord record;
+    std::shared_ptr<const FaceTable> faces;  ///< nothing unless asked for
     std::uint64_t nodeBytes = 0;
     std::uint64_t lodBytes = 0;
     std::uint64_t valueBytes = 0;
@@ -173,9 +182,11 @@ struct Scene::PlacedModel {
 /// Brings models to the device, or takes those that are there.
 class Scene::ModelPlacer {
   public:
-    ModelPlacer(Device& device, const Scene* known) : device_(device), arena_(device.maxBufferBytes()) {
-        if (known == nullptr) return;
-        for (const auto& model : known->models_) known_[keyOf(model->used)] = model;
+    ModelPlacer(Device& device, const SceneOptions& options)
+        : device_(device), faces_(options.faces), arena_(device.maxBufferBytes()) {
+        if (options.known == nullptr) return;
+        for (const auto& model : options.known->models_)
+            if (!faces_ || model->faces) known_[keyOf(model->used)] = model;
     }
 
     Result<PlacedModels> place(const std::vector<UsedModel>& wanted) {
@@ -187,7 +198,7 @@ class Scene::ModelPlacer {
                 placed_[i] = found->second;
                 continue;
             }
-            PFVOX_TRY(WideModel, model, layOut(i, wanted[i], arena_));
+            PFVOX_TRY(WideModel, model, layOut(i, wanted[i], faces_, arena_));
             fresh.push_back(std::move(model));
         }
         PFVOX_CHECK(arena_.createBuffers(device_));
@@ -205,6 +216,7 @@ class Scene::ModelPlacer {
         fresh_[model.index] =
             std::make_shared<PlacedModel>(PlacedModel{.used = used,
                                                       .record = record,
+                                                      .faces = model.faces,
                                                       .nodeBytes = model.tree.nodeBytes(),
                                                       .lodBytes = model.tree.lodBytes(),
                                                       .valueBytes = model.tree.valueBytes(),
@@ -225,17 +237,41 @@ class Scene::ModelPlacer {
     }
 
     Device& device_;
+    bool faces_;
     BlockArena arena_;
     std::map<Key, std::shared_ptr<const PlacedModel>> known_;
     std::map<std::size_t, std::shared_ptr<PlacedModel>> fresh_;
     std::vector<std::shared_ptr<const PlacedModel>> placed_;
 };
 
+/// Gives the faces of each instance their place in the list of all, in the order of instances, and says how
+/// many there are.
+std::uint64_t Scene::numberFaces(SceneRecords& records, const PlacedModels& placed,
+                                 std::vector<PlacedFaces>& faces) {
+    std::vector<std::size_t> order(records.instances.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::ranges::sort(order, {}, [&](std::size_t i) { return records.instances[i].id; });
+    std::uint64_t next = 0;
+    for (const std::size_t i : order) {
+        shared::InstanceRecord& record = records.instances[i];
+        const PlacedModel& model = *placed[record.model];
+        record.firstFace = static_cast<std::uint32_t>(next);
+        faces.push_back({.instance = static_cast<std::uint32_t>(i),
+                         .firstFace = record.firstFace,
+                         .model = model.used.model,
+                         .index = &model.faces->index,
+                         .frameFromModel = records.frameFromModel[i],
+                         .table = model.faces});
+        next += model.faces->index.faceCount;
+    }
+    return next;
+}
+
 Result<Scene> Scene::build(Device& device, std::span<const ScenePart> parts, Diagnostics& diagnostics,
-                           const Scene* known, const glm::dvec3& origin) {
+                           const SceneOptions& options) {
     const auto started = std::chrono::steady_clock::now();
-    PFVOX_TRY(const SceneRecords, records, makeRecords(parts, origin, diagnostics));
-    PFVOX_TRY(PlacedModels, placed, ModelPlacer(device, known).place(records.models));
+    PFVOX_TRY(SceneRecords, records, makeRecords(parts, options.origin, diagnostics));
+    PFVOX_TRY(PlacedModels, placed, ModelPlacer(device, options).place(records.models));
     std::vector<shared::ModelRecord> models;
     SceneStatistics statistics;
     for (const auto& model : placed) {
@@ -246,6 +282,17 @@ Result<Scene> Scene::build(Device& device, std::span<const ScenePart> parts, Dia
         statistics.lodBytes += model->lodBytes;
         statistics.valueBytes += model->valueBytes;
         statistics.paletteBytes += model->paletteBytes;
+        if (model->faces)
+            statistics.faceBytes +=
+                sizeof(glm::uvec2) * (model->faces->cells.size() + model->faces->slots.size());
+    }
+    std::vector<PlacedFaces> faces;
+    std::uint64_t faceCount = 0;
+    if (options.faces) {
+        faceCount = numberFaces(records, placed, faces);
+        if (faceCount > 0xffffffffu)
+            return fail(ErrorCode::GpuOutOfMemory, "the scene has " + std::to_string(faceCount) +
+                                                       " faces; light is baked for at most 4 billion");
     }
     PFVOX_TRY(Buffer, table, uploadTable(device, records, models));
     PFVOX_CHECK(device.flush());
@@ -253,10 +300,8 @@ Result<Scene> Scene::build(Device& device, std::span<const ScenePart> parts, Dia
     statistics.models = static_cast<std::uint32_t>(models.size());
     statistics.instances = static_cast<std::uint32_t>(records.instances.size());
     statistics.materials = static_cast<std::uint32_t>(records.materials.size());
-    for (const shared::MaterialRecord& material : records.materials) {
-        statistics.hasGlass = statistics.hasGlass || letsThrough(material);
-        statistics.hasMirrors = statistics.hasMirrors || mirrors(material);
-    }
+    statistics.hasGlass = records.hasGlass;
+    statistics.hasMirrors = records.hasMirrors;
     statistics.bvhNodes = static_cast<std::uint32_t>(records.bvhNodes.size());
     statistics.instanceBytes = table.sizeBytes();
     const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - started;
@@ -264,7 +309,9 @@ Result<Scene> Scene::build(Device& device, std::span<const ScenePart> parts, Dia
 
     Scene scene(std::move(table), std::move(placed));
     scene.bounds_ = records.bounds;
-    scene.origin_ = origin;
+    scene.origin_ = options.origin;
+    scene.faces_ = std::move(faces);
+    scene.faceCount_ = static_cast<std::uint32_t>(faceCount);
     scene.statistics_ = statistics;
     return scene;
 }

@@ -26,6 +26,11 @@ shared::MaterialRecord recordOf(const Material& material) {
             .reserved0 = 0};
 }
 
+bool mirrors(const Material& m) {
+    const bool metal = m.type == MaterialType::Metal && m.metalness > 0.0f;
+    return (metal || m.type == MaterialType::Plastic) && m.emissionStrength == 0.0f;
+}
+
 /// Cube space of a model: what its wide root spans is [1, 2)^3.
 Affine voxelsFromCube(const OctreeModel& model) {
     const double edge = std::ldexp(1.0, 2 * static_cast<int>(wideLevels(model.depth)));
@@ -80,7 +85,7 @@ class RecordMaker {
                             fmt::format("model '{}' has {} octree levels; the GPU traversal has {}",
                                         model.name, model.depth, 2 * shared::kMaxWideLevels));
             }
-            addInstance(instance, part.worldFromAsset, {&model, firstMaterial}, id);
+            addInstance(instance, part.worldFromAsset, {&model, &asset.materials, firstMaterial}, id);
         }
         return {};
     }
@@ -88,7 +93,10 @@ class RecordMaker {
     void finish() {
         Bvh bvh = buildBvh(boxes_);
         records_.bvhNodes = std::move(bvh.nodes);
-        for (const std::uint32_t i : bvh.order) records_.instances.push_back(unordered_[i]);
+        for (const std::uint32_t i : bvh.order) {
+            records_.instances.push_back(unordered_[i]);
+            records_.frameFromModel.push_back(frames_[i]);
+        }
     }
 
   private:
@@ -97,7 +105,11 @@ class RecordMaker {
         const auto next = static_cast<std::uint32_t>(records_.materials.size());
         const auto [entry, added] = firstMaterialOf_.try_emplace(&asset, next);
         if (added) {
-            for (const Material& material : asset.materials) records_.materials.push_back(recordOf(material));
+            for (const Material& material : asset.materials) {
+                records_.materials.push_back(recordOf(material));
+                records_.hasGlass |= letsThrough(material);
+                records_.hasMirrors |= mirrors(material);
+            }
         }
         return entry->second;
     }
@@ -127,8 +139,11 @@ class RecordMaker {
                               .cubeFromWorld2 = row(2),
                               .model = modelIndex(used),
                               .id = id,
-                              .reserved0 = 0,
-                              .reserved1 = 0});
+                              .firstFace = 0,
+                              .reserved0 = 0});
+        Affine frameFromModel = worldFromModel;
+        frameFromModel[3] -= origin_;
+        frames_.push_back(frameFromModel);
         boxes_.push_back(boxOf(used.model->bounds, worldFromModel, origin_, records_.bounds));
     }
 
@@ -145,6 +160,7 @@ class RecordMaker {
     std::unordered_map<const OctreeModel*, std::uint32_t> indexOf_;
     std::unordered_map<const OctreeAsset*, std::uint32_t> firstMaterialOf_;
     std::vector<shared::InstanceRecord> unordered_;
+    std::vector<Affine> frames_;
     std::vector<Box> boxes_;
     std::uint32_t nextId_ = 0;
 };
@@ -176,7 +192,9 @@ shared::ModelRecord recordOf(const OctreeModel& model) {
             .palettes = {0, 0},
             .lods = {0, 0},
             .originVoxels = model.originVoxels,
-            .reserved1 = 0};
+            .reserved1 = 0,
+            .faceCells = {0, 0},
+            .faceSlots = {0, 0}};
 }
 
 }  // namespace pfvox::gpu::detail

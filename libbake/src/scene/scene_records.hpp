@@ -13,14 +13,18 @@ namespace pfvox::gpu::detail {
 /// A model that some visible instance uses.
 struct UsedModel {
     const OctreeModel* model = nullptr;
-    std::uint32_t firstMaterial = 0;  ///< of its asset, in the scene's material list
+    const std::vector<Material>* materials = nullptr;  ///< of its asset
+    std::uint32_t firstMaterial = 0;                   ///< of its asset, in the scene's material list
 };
 
 struct SceneRecords {
     std::vector<UsedModel> models;
     std::vector<shared::InstanceRecord> instances;  ///< in BVH order
+    std::vector<Affine> frameFromModel;             ///< an instance; from the origin
     std::vector<shared::MaterialRecord> materials;
     std::vector<shared::BvhNode> bvhNodes;
+    bool hasGlass = false;
+    bool hasMirrors = false;
     WorldBox bounds;  ///< in the world; boxes and matrices count from the origin
 };
 

@@ -80,6 +80,10 @@ Material quantised(const Material& material);
 /// full alpha. Where in doubt it is not opaque, so that nothing behind it is taken for hidden.
 bool isOpaque(const Material& material);
 
+/// Whether light goes through a voxel of this material in a straight line, as glass; else the voxel stops it,
+/// whatever its alpha. As shaders/material.glsl says.
+bool letsThrough(const Material& material);
+
 /// One placement of a model. Mirrors (negative determinant) are allowed: MagicaVoxel files contain them.
 struct Instance {
     std::uint32_t model = 0;                   ///< index into the asset's models
