@@ -29,7 +29,7 @@ void main() {
     float noise = count > 0.0 ? sqrt(squares / count) / max(mean / count, faces.noiseFloor) : 0.0;
     FaceFloats(faces.noise).at[cluster] = noise;
     if (noise > faces.noiseTarget) {
-        for (uint value = first; value < end; ++value) FaceWords(faces.goals).at[value] = push.batchEnd;
+        for (uint value = first; value < end; ++value) FaceWords(faces.goals).at[value] = push.source;  // of the next round
         atomicAdd(FaceControls(faces.control).control.unfinished, 1u);
     }
 }

@@ -133,7 +133,7 @@ PFVOX_STRUCT(FaceBake) {
     uint reserved0;
 };
 PFVOX_SIZE(FaceBake, 160);
-PFVOX_OFFSET(FaceBake, linkCount, 136);
+PFVOX_OFFSET(FaceBake, linkCount, 128);
 
 PFVOX_STRUCT(FaceControl) {
     uint raysLow;

@@ -26,9 +26,20 @@ enum class LightSampling : std::uint8_t {
     Emitters,    ///< emissive voxels by next-event estimation only
     Directions,  ///< emissive voxels only where a path runs into them
 };
+/// How light on faces is baked (docs/baking.md). Counts of rays are those of one value and multiples of 128.
+struct FaceSettings {
+    std::uint32_t baseRays = 256;   ///< kept as links between faces, on which bounces are solved
+    std::uint32_t minRays = 256;    ///< of the final gather
+    std::uint32_t maxRays = 16384;  ///< minRays times a power of four
+    /// Neighbors on a surface have rays enough when the relative standard error of their light is below it.
+    float noiseTarget = 0.005f;
+    bool divide = true;  ///< several values a face beside lamps, where light bends, and at rims
+};
+
 /// How a bake is done.
 struct BakeSettings {
     ProbeResolution resolution = resolutionOf(ProbeProfile::Default);  ///< of the maps
+    FaceSettings faces;
     std::uint64_t seed = 0;
     std::uint32_t minSamples = 32;    ///< paths a texel; a multiple of 16
     std::uint32_t maxSamples = 4096;  ///< a multiple of 16, >= minSamples

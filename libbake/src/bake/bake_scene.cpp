@@ -4,8 +4,8 @@
 
 namespace pfvox::bake {
 
-Result<BakeSceneBuffers> BakeSceneBuffers::create(gpu::Device& device, const gpu::Scene& scene, const Sun& sun,
-                                                  const Sky& sky, const EmitterList& list,
+Result<BakeSceneBuffers> BakeSceneBuffers::create(gpu::Device& device, const gpu::Scene& scene,
+                                                  const Sun& sun, const Sky& sky, const EmitterList& list,
                                                   const BakeSettings& settings) {
     const std::uint64_t faces = std::max<std::uint64_t>(list.faces.size(), 1);
     PFVOX_TRY(gpu::Buffer, emitters, device.createBuffer(faces * sizeof(shared::EmitterFace), "emitters"));
@@ -15,7 +15,8 @@ Result<BakeSceneBuffers> BakeSceneBuffers::create(gpu::Device& device, const gpu
         .emitters = emitters.addressWords(),
         .emitterCount = static_cast<std::uint32_t>(list.faces.size()),
         .emitterPower = list.power,
-        .maxBounces = std::min(settings.maxBounces.value_or(shared::kMaxPathBounces), shared::kMaxPathBounces),
+        .maxBounces =
+            std::min(settings.maxBounces.value_or(shared::kMaxPathBounces), shared::kMaxPathBounces),
         .sampling = static_cast<std::uint32_t>(settings.sampling),
         .sunDirection = glm::vec3(glm::normalize(sun.direction)),
         .seedLow = static_cast<std::uint32_t>(settings.seed),

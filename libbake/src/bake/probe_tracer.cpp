@@ -45,27 +45,6 @@ std::uint32_t groupFor(const gpu::DeviceInfo& device, const TracedResolution& re
         std::clamp<std::uint64_t>(std::min(wanted, fitting), 1, software ? kMostSoftwareGroup : kMostGroup));
 }
 
-shared::BakeScene sceneRecord(const gpu::Scene& scene, const TracerInput& input, const BakeSettings& settings,
-                              const gpu::Buffer& emitters) {
-    return {.scene = scene.address(),
-            .emitters = emitters.addressWords(),
-            .emitterCount = static_cast<std::uint32_t>(input.emitters.faces.size()),
-            .emitterPower = input.emitters.power,
-            .maxBounces =
-                std::min(settings.maxBounces.value_or(shared::kMaxPathBounces), shared::kMaxPathBounces),
-            .sampling = static_cast<std::uint32_t>(settings.sampling),
-            .sunDirection = glm::vec3(glm::normalize(input.sun.direction)),
-            .seedLow = static_cast<std::uint32_t>(settings.seed),
-            .sunIrradiance = glm::vec3(input.sun.irradiance),
-            .seedHigh = static_cast<std::uint32_t>(settings.seed >> 32),
-            .skyZenith = glm::vec3(input.sky.zenith),
-            .reserved0 = 0,
-            .skyHorizon = glm::vec3(input.sky.horizon),
-            .reserved1 = 0,
-            .skyGround = glm::vec3(input.sky.ground),
-            .reserved2 = 0};
-}
-
 WaveOptions waveOptions(const TracerInput& input, const BakeSettings& settings) {
     const glm::dvec3& sun = input.sun.irradiance;
     return {.hasGlass = input.hasGlass,
@@ -112,15 +91,12 @@ Result<ProbeTracer::Programs> ProbeTracer::createPrograms(gpu::Device& device, b
     return Programs{std::move(geometry), std::move(resetTiles), std::move(tiles), std::move(finish)};
 }
 
-Result<ProbeTracer::Buffers> ProbeTracer::createBuffers(gpu::Device& device, const EmitterList& emitters,
+Result<ProbeTracer::Buffers> ProbeTracer::createBuffers(gpu::Device& device,
                                                         const TracedResolution& resolution,
                                                         std::uint32_t probes) {
-    const std::uint64_t faces = std::max<std::uint64_t>(emitters.faces.size(), 1);
     const std::uint64_t texels = std::uint64_t{probes} * resolution.depth * resolution.depth;
     const std::uint64_t light = std::uint64_t{probes} * resolution.light * resolution.light;
     const std::uint64_t tiles = light / shared::kTileTexels;
-    PFVOX_TRY(gpu::Buffer, scene, device.createBuffer(sizeof(shared::BakeScene), "bake scene"));
-    PFVOX_TRY(gpu::Buffer, faceList, device.createBuffer(faces * sizeof(shared::EmitterFace), "emitters"));
     PFVOX_TRY(gpu::Buffer, wave, device.createBuffer(sizeof(shared::BakeWave), "bake wave"));
     PFVOX_TRY(gpu::Buffer, places, device.createBuffer(probes * sizeof(shared::BakeProbe), "probes"));
     PFVOX_TRY(gpu::Buffer, seen, device.createBuffer(texels * sizeof(shared::SeenTexel), "seen texels"));
@@ -128,10 +104,8 @@ Result<ProbeTracer::Buffers> ProbeTracer::createBuffers(gpu::Device& device, con
     PFVOX_TRY(gpu::Buffer, noise, device.createBuffer(tiles * sizeof(shared::TileStatistics), "tiles"));
     PFVOX_TRY(gpu::Buffer, maps,
               device.createBuffer(probes * mapWords(resolution) * sizeof(std::uint32_t), "maps"));
-    if (!emitters.faces.empty())
-        PFVOX_CHECK(device.upload(faceList, 0, std::as_bytes(std::span(emitters.faces))));
-    return Buffers{std::move(scene), std::move(faceList), std::move(wave),  std::move(places),
-                   std::move(seen),  std::move(sums),     std::move(noise), std::move(maps)};
+    return Buffers{std::move(wave), std::move(places), std::move(seen),
+                   std::move(sums), std::move(noise),  std::move(maps)};
 }
 
 Result<ProbeTracer> ProbeTracer::create(gpu::Device& device, const gpu::Scene& scene,
@@ -162,10 +136,12 @@ Result<ProbeTracer> ProbeTracer::createFor(gpu::Device& device, const gpu::Scene
     PFVOX_TRY(Programs, programs, createPrograms(device, input.hasGlass));
     PFVOX_TRY(PathWaves, waves, PathWaves::create(device, waveOptions(input, settings), items));
     const std::uint32_t group = groupFor(device.info(), resolution, settings, waves.mostPaths());
-    PFVOX_TRY(Buffers, buffers, createBuffers(device, input.emitters, resolution, group));
+    PFVOX_TRY(BakeSceneBuffers, bakeScene,
+              BakeSceneBuffers::create(device, scene, input.sun, input.sky, input.emitters, settings));
+    PFVOX_TRY(Buffers, buffers, createBuffers(device, resolution, group));
     const glm::vec2 coding = DepthCoder(input.depth).scaleAndLogRange();
     shared::BakeWave wave{};
-    wave.scene = buffers.scene.addressWords();
+    wave.scene = bakeScene.address();
     wave.probes = buffers.probes.addressWords();
     wave.texels = buffers.texels.addressWords();
     wave.sums = buffers.sums.addressWords();
@@ -177,9 +153,8 @@ Result<ProbeTracer> ProbeTracer::createFor(gpu::Device& device, const gpu::Scene
     wave.depthLogRange = coding.y;
     waves.describe(wave);
     PFVOX_CHECK(device.upload(buffers.wave, 0, gpu::bytesOf(wave)));
-    PFVOX_CHECK(
-        device.upload(buffers.scene, 0, gpu::bytesOf(sceneRecord(scene, input, settings, buffers.emitters))));
-    ProbeTracer tracer(device, std::move(waves), std::move(programs), std::move(buffers));
+    ProbeTracer tracer(device, std::move(waves), std::move(bakeScene), std::move(programs),
+                       std::move(buffers));
     tracer.resolution_ = resolution;
     tracer.groupSize_ = group;
     tracer.rules_ = {.minBatches = settings.minSamples / shared::kBatchSamples,

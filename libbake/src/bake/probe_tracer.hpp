@@ -4,7 +4,7 @@
 #include <optional>
 #include <pfvox/gpu_scene.hpp>
 
-#include "bake/emitters.hpp"
+#include "bake/bake_scene.hpp"
 #include "bake/path_waves.hpp"
 #include "bake/tile_rounds.hpp"
 
@@ -64,8 +64,6 @@ class ProbeTracer {
         gpu::Program finish;
     };
     struct Buffers {
-        gpu::Buffer scene;  ///< shared::BakeScene
-        gpu::Buffer emitters;
         gpu::Buffer wave;  ///< shared::BakeWave
         gpu::Buffer probes;
         gpu::Buffer texels;  ///< shared::SeenTexel
@@ -73,17 +71,19 @@ class ProbeTracer {
         gpu::Buffer tiles;
         gpu::Buffer maps;
     };
-    ProbeTracer(gpu::Device& device, PathWaves waves, Programs programs, Buffers buffers)
+    ProbeTracer(gpu::Device& device, PathWaves waves, BakeSceneBuffers scene, Programs programs,
+                Buffers buffers)
         : device_(&device),
           waves_(std::move(waves)),
+          scene_(std::move(scene)),
           programs_(std::move(programs)),
           buffers_(std::move(buffers)) {}
     static Result<ProbeTracer> createFor(gpu::Device& device, const gpu::Scene& scene,
                                          const TracerInput& input, const BakeSettings& settings,
                                          std::uint64_t items);
     static Result<Programs> createPrograms(gpu::Device& device, bool hasGlass);
-    static Result<Buffers> createBuffers(gpu::Device& device, const EmitterList& emitters,
-                                         const TracedResolution& resolution, std::uint32_t probes);
+    static Result<Buffers> createBuffers(gpu::Device& device, const TracedResolution& resolution,
+                                         std::uint32_t probes);
     Result<double> run(const gpu::Program& program, std::uint32_t first, std::uint32_t count,
                        std::uint32_t perGroup);
     std::uint32_t tilesPerProbe() const {
@@ -94,6 +94,7 @@ class ProbeTracer {
 
     gpu::Device* device_;
     PathWaves waves_;
+    BakeSceneBuffers scene_;
     Programs programs_;
     Buffers buffers_;
     TracedResolution resolution_;
