@@ -7,6 +7,7 @@
 #include "shared/verify.glsl.h"
 #define PFVOX_TRACE_GROUP_SIZE (kVerifyGroupEdge * kVerifyGroupEdge)
 #include "reference_path.glsl"
+#include "face_lookup.glsl"
 #include "probe_lookup.glsl"
 
 layout(local_size_x = kVerifyGroupEdge, local_size_y = kVerifyGroupEdge) in;
@@ -30,8 +31,13 @@ void main() {
         VerifyPixel fresh = VerifyPixel(vec4(vec3(0.0), -1.0), vec4(0.0), vec4(0.0), 0u, 0u, 0u, 0u);
         if (hit.instance != kNoInstance) {
             Surface surface = surfaceOf(scene, ray, hit);
-            ProbeLight light = lookUpProbes(ProbeFieldRef(push.field).field, surface.position, surface.normal, 0.0);
-            fresh.lookup = vec4(light.indirect, float(light.tier));
+            if ((push.faces.x | push.faces.y) != 0u) {
+                FaceLight light = faceLightOf(FaceFields(push.faces).field, scene, ray, hit);
+                fresh.lookup = vec4(light.indirect, float(light.known ? kTierFaces : kTierNone));
+            } else {
+                ProbeLight light = lookUpProbes(ProbeFieldRef(push.field).field, surface.position, surface.normal, 0.0);
+                fresh.lookup = vec4(light.indirect, float(light.tier));
+            }
             fresh.material = materialOf(scene, surface).type;
         }
         Pixels(push.pixels).at[index] = fresh;

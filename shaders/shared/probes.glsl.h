@@ -62,6 +62,7 @@ PFVOX_CONSTANT(uint, kTierNone, 0u);     // no active probe at all
 PFVOX_CONSTANT(uint, kTierTexels, 1u);   // texels that see the point
 PFVOX_CONSTANT(uint, kTierTraced, 2u);   // light-field trace: secondary rays only
 PFVOX_CONSTANT(uint, kTierCompact, 3u);  // irradiance of the eight probes around
+PFVOX_CONSTANT(uint, kTierFaces, 5u);    // the face itself (shared/faces.glsl.h)
 PFVOX_CONSTANT(uint, kTierNearest, 4u);  // irradiance of the nearest active probe
 
 // ---- Light-field tracing ----

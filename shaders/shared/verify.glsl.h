@@ -36,12 +36,15 @@ PFVOX_STRUCT(VerifyPush) {
     uvec2 field;   // ProbeFieldRecord
     uvec2 view;
     uvec2 pixels;  // VerifyPixel[]
+    uvec2 faces;   // FaceField; 0 = look up probes
     uint firstSample;
     uint sampleCount;  // 0: the lookup only
     uint firstRow;
     uint reserved0;
+    uint reserved1;
+    uint reserved2;
 };
-PFVOX_SIZE(VerifyPush, 48);
+PFVOX_SIZE(VerifyPush, 64);
 
 PFVOX_SHARED_END
 #endif

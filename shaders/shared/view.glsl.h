@@ -107,11 +107,11 @@ PFVOX_CONSTANT(uint, kCountStepLimit, 2u);
 PFVOX_CONSTANT(uint, kCountSunRays, 3u);
 PFVOX_CONSTANT(uint, kCountReflectionRays, 4u);
 PFVOX_CONSTANT(uint, kCountWithoutValue, 5u);  // lookups without a tier, or not finite
-PFVOX_CONSTANT(uint, kCountTiers, 6u);         // five, by kTier...
-PFVOX_CONSTANT(uint, kCountFieldStates, 11u);  // three, by kField...
-PFVOX_CONSTANT(uint, kCountFieldAgrees, 14u);  // the octree says the same
-PFVOX_CONSTANT(uint, kCountAmbientRays, 15u);
-PFVOX_CONSTANT(uint, kViewCounterCount, 16u);
+PFVOX_CONSTANT(uint, kCountTiers, 6u);         // six, by kTier...
+PFVOX_CONSTANT(uint, kCountFieldStates, 12u);  // three, by kField...
+PFVOX_CONSTANT(uint, kCountFieldAgrees, 15u);  // the octree says the same
+PFVOX_CONSTANT(uint, kCountAmbientRays, 16u);
+PFVOX_CONSTANT(uint, kViewCounterCount, 17u);
 
 PFVOX_STRUCT(ViewPushConstants) {
     uvec2 scene;

@@ -141,7 +141,7 @@ class VerifyRun {
                                       .maxBounces = std::min(bounces, VerifySettings{}.maxBounces)};
         const ReferenceStore store(options_.references, reader.info().sceneHash);
         for (const NamedCamera& named : cameras) {
-            const VerifyInput input{loaded, scene, probes, named.camera};
+            const VerifyInput input{.loaded = loaded, .scene = scene, .camera = named.camera, .probes = &probes};
             PFVOX_TRY(const CameraVerdict, verdict, judge({device, verifier, store, input, named}, settings));
             reporter_.clearProgress();
             report(verdict);

@@ -125,7 +125,8 @@ Result<void> writePictures(const std::filesystem::path& folder, const CameraVerd
                                                                        {0.20f, 0.62f, 0.24f},
                                                                        {0.85f, 0.75f, 0.15f},
                                                                        {0.16f, 0.36f, 0.78f},
-                                                                       {0.80f, 0.18f, 0.12f}}};
+                                                                       {0.80f, 0.18f, 0.12f},
+                                                                       {0.10f, 0.62f, 0.62f}}};
     const VerifiedPicture& picture = verdict.picture;
     std::array<std::vector<glm::vec3>, 4> images;
     for (std::size_t i = 0; i < picture.pixels.size(); ++i) {

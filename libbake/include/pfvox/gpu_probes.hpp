@@ -15,9 +15,9 @@
 namespace pfvox::gpu {
 
 /// Which step of the lookup gave most of a value.
-enum class ProbeTier : std::uint8_t { None, Texels, Traced, Compact, Nearest };
-inline constexpr std::size_t kProbeTierCount = 5;  ///< tiers of ProbeTier, None included
-/// "none", "texels", "traced", "compact", "nearest".
+enum class ProbeTier : std::uint8_t { None, Texels, Traced, Compact, Nearest, Faces };
+inline constexpr std::size_t kProbeTierCount = 6;  ///< tiers of ProbeTier, None included
+/// "none", "texels", "traced", "compact", "nearest", "faces".
 std::string_view toString(ProbeTier tier);
 
 /// What of a probe file goes to the device.

@@ -10,6 +10,7 @@
 #pragma once
 
 #include <array>
+#include <pfvox/gpu_faces.hpp>
 #include <pfvox/gpu_probes.hpp>
 #include <pfvox/gpu_scene.hpp>
 #include <pfvox/scene.hpp>
@@ -97,8 +98,9 @@ struct VerifyScore {
 struct VerifyInput {
     const LoadedScene& loaded;  ///< sun and sky
     const gpu::Scene& scene;
-    const gpu::GpuProbes& probes;  ///< baked from it
     const Camera& camera;
+    const gpu::GpuProbes* probes = nullptr;  ///< baked from it; what is looked up, unless there are faces
+    const gpu::GpuFaces* faces = nullptr;    ///< the same
 };
 
 /// Renders pictures both ways and compares them. Not thread-safe.

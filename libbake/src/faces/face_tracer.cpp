@@ -288,7 +288,7 @@ Result<void> FaceTracer::gather(const Values& values, TracedFaces& result, const
                             .firstBatch = begin,
                             .batchEnd = end,
                             .source = source_},
-                           result.light, done));
+                           result.gather, done));
         PFVOX_TRY(shared::FaceControl, control, readControl());
         control.unfinished = 0;
         PFVOX_CHECK(writeControl(control));
@@ -298,7 +298,7 @@ Result<void> FaceTracer::gather(const Values& values, TracedFaces& result, const
                             .firstBatch = end,
                             .batchEnd = end,
                             .source = std::min(4 * end, most)},
-                           result.light, done));
+                           result.gather, done));
         PFVOX_TRY(const shared::FaceControl, after, readControl());
         if (after.unfinished == 0 || end >= most) return {};
         begin = end;
@@ -312,7 +312,7 @@ Result<std::vector<std::uint32_t>> FaceTracer::divide(const Values& values, Trac
                             .count = values.count,
                             .perGroup = shared::kFaceGroupSize,
                             .source = pass},
-                           result.light, done));
+                           result.gather, done));
     }
     return get<std::uint32_t>(*device_, buffers_.levels, values.count);
 }
@@ -363,17 +363,17 @@ Result<TracedFaces> FaceTracer::assemble(const Values& whole, const std::optiona
         PFVOX_TRY(std::vector<glm::vec4>, found, get<glm::vec4>(*device_, divided->sums, divided->count));
         parts = std::move(found);
     }
-    result.levels.resize(faces);
+    result.light.levels.resize(faces);
     result.firstValue.resize(faces + std::size_t{1});
     std::uint64_t next = 0;
     for (std::uint32_t face = 0; face < faces; ++face) {
         const bool none = sums[face].w <= 0.0f;
-        result.levels[face] = none ? kNoFaceLevel : static_cast<std::uint8_t>(levels[face]);
+        result.light.levels[face] = none ? kNoFaceLevel : static_cast<std::uint8_t>(levels[face]);
         result.firstValue[face] = next;
         if (!none) next += std::uint64_t{1} << (2 * levels[face]);
     }
     result.firstValue[faces] = next;
-    result.values.resize(next);
+    result.light.values.resize(next);
     std::size_t part = 0;
     const auto wordOf = [](const glm::vec4& sum) {
         return shared::packRgb9e5(glm::vec3(sum) / std::max(sum.w, 1.0f));
@@ -381,12 +381,12 @@ Result<TracedFaces> FaceTracer::assemble(const Values& whole, const std::optiona
     for (std::uint32_t face = 0; face < faces; ++face) {
         const std::uint64_t first = result.firstValue[face];
         if (levels[face] == 0) {
-            if (result.levels[face] == 0) result.values[first] = wordOf(sums[face]);
+            if (result.light.levels[face] == 0) result.light.values[first] = wordOf(sums[face]);
             continue;
         }
         // A part that another instance covers has what the whole face has.
         for (std::uint32_t i = 0; i < 1u << (2 * levels[face]); ++i, ++part)
-            result.values[first + i] = wordOf(parts[part].w > 0.0f ? parts[part] : sums[face]);
+            result.light.values[first + i] = wordOf(parts[part].w > 0.0f ? parts[part] : sums[face]);
     }
     result.noise.resize(faces);
     double noiseSum = 0.0;

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <pfvox/bake.hpp>
-#include <pfvox/gpu_scene.hpp>
+#include <pfvox/gpu_faces.hpp>
 #include <vector>
 
 #include "bake/bake_scene.hpp"
@@ -12,14 +12,10 @@
 
 namespace pfvox::bake {
 
-/// A face that another instance covers.
-inline constexpr std::uint8_t kNoFaceLevel = 255;
-
-/// Light of all faces of a scene, in the order of gpu::Scene::faces().
+/// What a bake of all faces of a scene gives.
 struct TracedFaces {
-    std::vector<std::uint8_t> levels;       ///< a face: 4^level values, or kNoFaceValue
+    FaceValues light;
     std::vector<std::uint64_t> firstValue;  ///< a face, and the end
-    std::vector<std::uint32_t> values;      ///< RGB9E5
     std::vector<float> noise;               ///< a face: relative standard error of its neighborhood
     std::uint64_t dividedFaces = 0;
     std::uint64_t noisyValues = 0;  ///< stopped at the largest number of rays
@@ -28,7 +24,7 @@ struct TracedFaces {
     BakePass sun;
     BakePass links;
     BakePass solve;
-    BakePass light;
+    BakePass gather;
 };
 
 class FaceTracer {

@@ -189,6 +189,8 @@ std::string_view toString(ProbeTier tier) {
             return "traced";
         case ProbeTier::Compact:
             return "compact";
+        case ProbeTier::Faces:
+            return "faces";
         case ProbeTier::Nearest:
             return "nearest";
     }
