@@ -12,8 +12,8 @@ namespace pfvox {
 
 namespace {
 
-/// Work of one dispatch: short enough on slow devices.
-constexpr std::uint64_t kPathsPerDispatch = 1u << 16;
+/// Work of one dispatch: fills a large device, and is short enough for it.
+constexpr std::uint64_t kPathsPerDispatch = 1u << 22;
 
 shared::VerifyView viewOf(const Camera& camera, const gpu::Scene& scene, const VerifySettings& settings) {
     const glm::dvec3 toTarget = camera.target - camera.position;
@@ -154,18 +154,18 @@ Result<ReferencePicture> ProbeVerifier::trace(gpu::Device& device, const VerifyI
         sums[i].odd = begun.odd[i];
     }
     PFVOX_CHECK(device.upload(canvas.pixels, 0, std::as_bytes(std::span(sums))));
-    const std::uint64_t fitting = kPathsPerDispatch / settings.width / shared::kVerifyGroupEdge;
     // llvmpipe bounds the loops of an invocation, all together: docs/decisions/013-baker.md.
     const bool software = device.info().kind == gpu::DeviceKind::Software;
+    const std::uint32_t rows = software ? shared::kVerifyGroupEdge : settings.height;
+    const std::uint64_t fitting = kPathsPerDispatch / settings.width / rows;
     const auto perDispatch =
         software ? 1u : static_cast<std::uint32_t>(std::clamp<std::uint64_t>(fitting, 1, settings.samples));
     shared::VerifyPush& push = canvas.push;
     for (push.firstSample = begun.samples; push.firstSample < settings.samples;
          push.firstSample += push.sampleCount) {
         push.sampleCount = std::min(perDispatch, settings.samples - push.firstSample);
-        for (push.firstRow = 0; push.firstRow < settings.height; push.firstRow += shared::kVerifyGroupEdge) {
-            PFVOX_TRY(const double, gpuMs,
-                      canvas.launch(device, program_, {settings.width, shared::kVerifyGroupEdge}));
+        for (push.firstRow = 0; push.firstRow < settings.height; push.firstRow += rows) {
+            PFVOX_TRY(const double, gpuMs, canvas.launch(device, program_, {settings.width, rows}));
             begun.gpuMs += gpuMs;
         }
     }
