@@ -73,6 +73,15 @@ PFVOX_FUNCTION vec3 unpackRgb9e5(uint word) {
     return scale * vec3(float(word & 511u), float(word >> 9 & 511u), float(word >> 18 & 511u));
 }
 
+// Values of a scene.
+PFVOX_STRUCT(FaceField) {
+    uvec2 values;      // uint[] by face
+    uvec2 parts;       // uint[]: of divided faces, each row by row
+    uvec2 firstMeans;  // uint[] by record of the instance
+    uvec2 means;       // uint[]: beside the slots of a model, once an instance
+};
+PFVOX_SIZE(FaceField, 32);
+
 // --- The bake of faces (libbake/src/faces) ---
 //
 //     face_sun      sun that a face has, on average over it
