@@ -1,5 +1,5 @@
-// Light on faces: seconds, rays and values of a bake by its settings, and how far each camera's picture of it is from
-// path tracing, as JSON lines. Probes of the same scene can be judged by the same references.
+// Light on faces: seconds, rays and values of a bake by its settings, and how far each camera's picture of it
+// is from path tracing, as JSON lines. Probes of the same scene can be judged by the same references.
 //
 //     bench_faces scene.toml [--set base=256,min=256,max=16384,noise=0.005,divide=1]... [--probes file]...
 #include <CLI/CLI.hpp>
@@ -43,12 +43,18 @@ Result<FaceSettings> settingsOf(const std::string& text) {
         const std::size_t equals = part.find('=');
         const std::string name = part.substr(0, equals);
         const double value = std::stod(part.substr(equals + 1));
-        if (name == "base") settings.baseRays = static_cast<std::uint32_t>(value);
-        else if (name == "min") settings.minRays = static_cast<std::uint32_t>(value);
-        else if (name == "max") settings.maxRays = static_cast<std::uint32_t>(value);
-        else if (name == "noise") settings.noiseTarget = static_cast<float>(value);
-        else if (name == "divide") settings.divide = value != 0.0;
-        else return fail(ErrorCode::BadValue, "there is no setting " + name);
+        if (name == "base")
+            settings.baseRays = static_cast<std::uint32_t>(value);
+        else if (name == "min")
+            settings.minRays = static_cast<std::uint32_t>(value);
+        else if (name == "max")
+            settings.maxRays = static_cast<std::uint32_t>(value);
+        else if (name == "noise")
+            settings.noiseTarget = static_cast<float>(value);
+        else if (name == "divide")
+            settings.divide = value != 0.0;
+        else
+            return fail(ErrorCode::BadValue, "there is no setting " + name);
     }
     return settings;
 }
@@ -64,14 +70,20 @@ Json jsonOf(const VerifyPart& part) {
 /// References of the cameras, traced as far as the best of what they judge asks for.
 class Judge {
   public:
-    Judge(gpu::Device& device, const LoadedScene& loaded, const gpu::Scene& scene, const ProbeVerifier& verifier,
-          const Options& options, VerifySettings settings)
-        : device_(device), loaded_(loaded), scene_(scene), verifier_(verifier), options_(options), settings_(settings) {}
+    Judge(gpu::Device& device, const LoadedScene& loaded, const gpu::Scene& scene,
+          const ProbeVerifier& verifier, const Options& options, VerifySettings settings)
+        : device_(device),
+          loaded_(loaded),
+          scene_(scene),
+          verifier_(verifier),
+          options_(options),
+          settings_(settings) {}
 
     Result<void> judge(const std::string& what, const gpu::GpuProbes* probes, const gpu::GpuFaces* faces) {
         for (const Camera& camera : loaded_.scene.cameras) {
             const std::string name = camera.name;
-            if (!options_.cameras.empty() && std::ranges::find(options_.cameras, name) == options_.cameras.end())
+            if (!options_.cameras.empty() &&
+                std::ranges::find(options_.cameras, name) == options_.cameras.end())
                 continue;
             const VerifyInput input{loaded_, scene_, camera, probes, faces};
             ReferencePicture& reference = references_[name];
@@ -80,7 +92,8 @@ class Judge {
             settings.samples = std::max(options_.samples, reference.samples);
             VerifiedPicture picture;
             for (;;) {
-                PFVOX_TRY(ReferencePicture, traced, verifier_.trace(device_, input, settings, std::move(reference)));
+                PFVOX_TRY(ReferencePicture, traced,
+                          verifier_.trace(device_, input, settings, std::move(reference)));
                 reference = std::move(traced);
                 PFVOX_TRY(VerifiedPicture, looked, verifier_.lookUp(device_, input, reference));
                 picture = std::move(looked);
@@ -111,12 +124,14 @@ class Judge {
 };
 
 Result<void> run(const Options& options) {
-    PFVOX_TRY(gpu::Device, device, gpu::Device::open({.selector = options.device, .validation = options.validate}));
+    PFVOX_TRY(gpu::Device, device,
+              gpu::Device::open({.selector = options.device, .validation = options.validate}));
     DiagnosticList diagnostics;
     PFVOX_TRY(const LoadedScene, loaded, loadScene(options.scene, Limits{}, diagnostics));
     auto began = Clock::now();
     PFVOX_TRY(const gpu::Scene, scene,
-              gpu::Scene::build(device, gpu::partsOf(loaded), diagnostics, {.origin = loaded.origin(), .faces = true}));
+              gpu::Scene::build(device, gpu::partsOf(loaded), diagnostics,
+                                {.origin = loaded.origin(), .faces = true}));
     const double buildSeconds = secondsSince(began);
     PFVOX_TRY(const ProbeVerifier, verifier, ProbeVerifier::create(device));
     VerifySettings size;
@@ -131,10 +146,13 @@ Result<void> run(const Options& options) {
         double seconds = 1e30;
         for (std::uint32_t i = 0; i < options.repetitions; ++i) {
             began = Clock::now();
-            const bake::EmitterList emitters = bake::makeEmitters(bake::placedModels(loaded, loaded.origin()));
+            const bake::EmitterList emitters =
+                bake::makeEmitters(bake::placedModels(loaded, loaded.origin()));
             PFVOX_TRY(bake::FaceTracer, tracer,
-                      bake::FaceTracer::create(device, scene, loaded.scene.sun, loaded.scene.sky, emitters, settings));
-            PFVOX_TRY(bake::TracedFaces, faces, tracer.run([](const BakePass&) -> Result<void> { return {}; }));
+                      bake::FaceTracer::create(device, scene, loaded.scene.sun, loaded.scene.sky, emitters,
+                                               settings));
+            PFVOX_TRY(bake::TracedFaces, faces,
+                      tracer.run([](const BakePass&) -> Result<void> { return {}; }));
             seconds = std::min(seconds, secondsSince(began));
             traced = std::move(faces);
         }
@@ -150,7 +168,8 @@ Result<void> run(const Options& options) {
                           {"values", traced.light.values.size()},
                           {"sweeps", traced.sweeps},
                           {"noise", traced.meanNoise},
-                          {"noisyFraction", static_cast<double>(traced.noisyValues) / std::max(scene.faceCount(), 1u)},
+                          {"noisyFraction",
+                           static_cast<double>(traced.noisyValues) / std::max(scene.faceCount(), 1u)},
                           {"sun", pass(traced.sun)},
                           {"links", pass(traced.links)},
                           {"solve", pass(traced.solve)},

@@ -91,14 +91,13 @@ FaceLight faceLightAt(FaceField field, FacePlace place, vec2 at) {
 }
 
 // Of a node that stands for smaller ones.
-FaceLight meanFaceLight(FaceField field, ModelRecord model, Hit hit, uint face) {
-    uint first = FaceValues(field.firstMeans).at[hit.instance];
+FaceLight meanFaceLight(FaceField field, InstanceRecord instance, ModelRecord model, Hit hit, uint face) {
     uvec2 cell = FacePairs(model.faceCells).at[hit.node];
     uint directions = cell.x & kFaceDirections;
     if (directions == 0u) return kNoFaceLight;
     if ((directions >> face & 1u) == 0u) face = uint(findLSB(directions));  // none looks that way: any of it
     uint before = bitCount(directions & ((1u << face) - 1u));
-    return valueAt(field, FaceValues(field.means).at[first + (cell.x >> kFaceSlotShift) + before], vec2(0.0));
+    return valueAt(field, FaceValues(field.means).at[instance.firstMean + (cell.x >> kFaceSlotShift) + before], vec2(0.0));
 }
 
 // At the point where a ray has hit.
@@ -112,7 +111,7 @@ FaceLight faceLightOf(FaceField field, Scene sceneBuffer, Ray ray, Hit hit) {
                               cubeFromWorldVector(instance, ray.direction), hit);
     if (found.face == kFaceInside) return kNoFaceLight;
     if (isLevelOfDetail(place.model, WideNodes(place.model.nodes).at[hit.node], hit))
-        return meanFaceLight(field, place.model, hit, found.face);
+        return meanFaceLight(field, instance, place.model, hit, found.face);
     place.leaf = leafOf(place.model, hit);
     place.voxel = found.voxel;
     place.face = found.face;

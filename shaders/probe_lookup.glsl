@@ -303,13 +303,4 @@ ProbeLight lookUpProbes(ProbeFieldRecord field, vec3 position, vec3 normal, floa
     return light;
 }
 
-// What a picture of the tiers shows: turquoise faces, green texels, yellow traced, blue the eight around, red the nearest, magenta none.
-vec3 tierColor(uint tier) {
-    if (tier == kTierFaces) return vec3(0.10, 0.62, 0.62);
-    if (tier == kTierTexels) return vec3(0.20, 0.62, 0.24);
-    if (tier == kTierTraced) return vec3(0.85, 0.75, 0.15);
-    if (tier == kTierCompact) return vec3(0.16, 0.36, 0.78);
-    return tier == kTierNearest ? vec3(0.80, 0.18, 0.12) : vec3(1.0, 0.0, 1.0);
-}
-
 #endif

@@ -13,13 +13,13 @@ void main() {
     beginCounting();
     if (pixel.inside) {
         SeenPixel seen = SeenPixels(push.seen).at[pixel.index];
-        bool hasProbes = (view.field.x | view.field.y) != 0u;
-        if (seen.distance < kInfinity && (!hasProbes || isGround(seen))) {
+        bool isKnown = kHasFaces != 0u || (view.field.x | view.field.y) != 0u;
+        if (seen.distance < kInfinity && (!isKnown || isGround(seen))) {
             Scene scene = Scene(push.scene);
             SurfacePart part = partOf(view, scene, seen, cameraRay(view, pixel.at));
             RayCounts counts = RayCounts(0u, TraceStatistics(0u, 0u));
             vec3 indirect = guessedIndirect(view, scene, part, pixelKey(pixel.at), counts);
-            SeenPixels(push.seen).at[pixel.index].ambient = packLight(indirect);
+            SeenPixels(push.seen).at[pixel.index].ambient = packRgb9e5(indirect);
             count(counts.trace);
             count(kCountAmbientRays, counts.rays);
         }

@@ -2,6 +2,8 @@
 #ifndef PFVOX_VIEW_COLORS_GLSL
 #define PFVOX_VIEW_COLORS_GLSL
 
+#include "shared/probes.glsl.h"
+
 uint hash(uint x) {
     x = (x ^ x >> 16) * 0x7feb352du;
     x = (x ^ x >> 15) * 0x846ca68bu;
@@ -27,5 +29,14 @@ vec3 heatColor(float x) {
 float faceShade(vec3 normal) { return 0.75 + 0.25 * dot(normal, vec3(0.36, 0.8, 0.48)); }
 
 const vec3 kBackground = vec3(0.02);
+
+// What a picture of the tiers shows: turquoise faces, green texels, yellow traced, blue the eight around, red the nearest, magenta none.
+vec3 tierColor(uint tier) {
+    if (tier == kTierFaces) return vec3(0.10, 0.62, 0.62);
+    if (tier == kTierTexels) return vec3(0.20, 0.62, 0.24);
+    if (tier == kTierTraced) return vec3(0.85, 0.75, 0.15);
+    if (tier == kTierCompact) return vec3(0.16, 0.36, 0.78);
+    return tier == kTierNearest ? vec3(0.80, 0.18, 0.12) : vec3(1.0, 0.0, 1.0);
+}
 
 #endif

@@ -8,6 +8,7 @@
 #define PFVOX_TRACE_GROUP_SIZE (kViewGroupEdge * kViewGroupEdge)
 #define PFVOX_TRACE_LOD
 #include "bake_rays.glsl"
+#include "face_lookup.glsl"
 #include "view_ground.glsl"
 #include "view_tone_map.glsl"
 
@@ -19,6 +20,9 @@ layout(buffer_reference, std430, buffer_reference_align = 8) buffer Counts { uve
 layout(buffer_reference, std430, buffer_reference_align = 16) buffer SeenPixels { SeenPixel at[]; };
 layout(buffer_reference, std430, buffer_reference_align = 16) buffer SeenShines { SeenShine at[]; };
 layout(push_constant) uniform Push { ViewPushConstants push; };
+
+// Light of faces says what is indirect; else probes or a guess.
+layout(constant_id = 1) const uint kHasFaces = 0u;
 
 // ---- Pixels and camera rays ----
 
@@ -55,6 +59,14 @@ vec3 skyRadiance(ViewParameters view, vec3 direction) {
 }
 
 // ---- What is handed from pass to pass ----
+
+// I of the face that was hit, kFaceNoValue where there is none.
+uint faceWord(ViewParameters view, Scene scene, Ray ray, Hit hit) {
+    if (kHasFaces == 0u) return 0u;
+    FaceLight light = faceLightOf(FaceFields(view.faces).field, scene, ray, hit);
+    return light.known ? packRgb9e5(light.indirect) : kFaceNoValue;
+}
+vec3 lightOfWord(uint word) { return word == kFaceNoValue ? vec3(0.0) : unpackRgb9e5(word); }
 
 // Extent of a cell along its normal, as the upper half of a float, and where its rays start, by components of five bits in parts
 // of two ray offsets. Of a level of detail, what it stands for: rays start as much farther off it.

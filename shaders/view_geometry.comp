@@ -31,14 +31,15 @@ Seen look(ViewParameters view, Scene scene, Ray ray, inout RayCounts counts) {
         Surface surface = surfaceOf(scene, walk.ray, hit);
         float distance = kHasGlass == 0u ? hit.t : length(surface.position - camera);
         bool enters = false;
+        Ray before = walk.ray;
         if (i == kMaxGlassSteps || !goOnThroughGlass(scene, walk, hit, surface, materialOf(scene, surface), enters)) {
             seen.pixel = SeenPixel(distance, surface.material, packWideNormal(surface.normal), surface.lodColor,
-                                   packCell(surface), 0u, packLight(walk.through), 0u);
+                                   packCell(surface), 0u, packLight(walk.through), faceWord(view, scene, before, hit));
             return seen;
         }
         if (enters && seen.shine.distance == kInfinity)
             seen.shine = SeenShine(vec3(0.0), distance, surface.material, packWideNormal(surface.normal),
-                                   packCell(surface), 0u);
+                                   packCell(surface), faceWord(view, scene, before, hit));
     }
     seen.pixel.through = packLight(walk.through);
     return seen;

@@ -2,6 +2,12 @@
 #include "view_lighting.glsl"
 #include "view_colors.glsl"
 
+#ifdef PFVOX_VIEW_PROBES
+const bool kKnowsLight = true;
+#else
+const bool kKnowsLight = kHasFaces != 0u;
+#endif
+
 vec3 finalColor(ViewParameters view, Ray ray, SeenPixel seen, uint index, vec3 radiance) {
     radiance *= unpackLight(seen.through);
     if ((push.shine.x | push.shine.y) != 0u) radiance += SeenShines(push.shine).at[index].added;
@@ -14,18 +20,20 @@ vec3 colorOf(ViewParameters view, Ray ray, SeenPixel seen, uint index) {
         return finalColor(view, ray, seen, index, skyRadiance(view, ray.direction));
     }
     SurfacePart part = partOf(view, Scene(push.scene), seen, ray);
-    vec3 indirect = unpackLight(seen.ambient);
+    vec3 indirect = lightOfWord(seen.ambient);
+    if (kKnowsLight && !isGround(seen)) {
+        uint tier = seen.ambient == kFaceNoValue ? kTierNone : kTierFaces;
 #ifdef PFVOX_VIEW_PROBES
-    if (!isGround(seen)) {
         ProbeLight light = indirectAt(view, part);
-        count(kCountTiers + light.tier, 1u);
-        count(kCountWithoutValue, uint(light.tier == kTierNone));
-        if (view.mode == kViewIndirect) return toneMap(view.toneMap, view.exposure * light.indirect);
-        if (view.mode == kViewTiers)
-            return light.tier == kTierNone ? vec3(1.0, 0.0, 1.0) : tierColor(light.tier) * faceShade(part.normal);
         indirect = light.indirect;
-    }
+        tier = light.tier;
 #endif
+        count(kCountTiers + tier, 1u);
+        count(kCountWithoutValue, uint(tier == kTierNone));
+        if (view.mode == kViewIndirect) return toneMap(view.toneMap, view.exposure * indirect);
+        if (view.mode == kViewTiers)
+            return tier == kTierNone ? vec3(1.0, 0.0, 1.0) : tierColor(tier) * faceShade(part.normal);
+    }
     vec3 radiance = radianceFrom(view, part, -ray.direction, unpackLight(seen.sun), indirect);
     if (isGround(seen)) radiance = mix(skyRadiance(view, ray.direction), radiance, groundFraction(view, part.position));
     return finalColor(view, ray, seen, index, radiance);
@@ -34,14 +42,10 @@ vec3 colorOf(ViewParameters view, Ray ray, SeenPixel seen, uint index) {
 void main() {
     ViewParameters view = Parameters(push.parameters).view;
     Pixel pixel = pixelOf(view);
-#ifdef PFVOX_VIEW_PROBES
-    beginCounting();
-#endif
+    if (kKnowsLight) beginCounting();
     if (pixel.inside) {
         SeenPixel seen = SeenPixels(push.seen).at[pixel.index];
         writeColor(view, pixel.index, colorOf(view, cameraRay(view, pixel.at), seen, pixel.index), seen.distance);
     }
-#ifdef PFVOX_VIEW_PROBES
-    endCounting();
-#endif
+    if (kKnowsLight) endCounting();
 }

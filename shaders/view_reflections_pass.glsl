@@ -6,7 +6,9 @@
 
 const float kMirrorAlpha = 1e-3;  // sharper lobes reflect like mirrors
 
-vec3 indirectOf(ViewParameters view, Scene scene, SurfacePart part, uint key, inout RayCounts counts) {
+// `word`: of the face, where there is light on faces.
+vec3 indirectOf(ViewParameters view, Scene scene, SurfacePart part, uint word, uint key, inout RayCounts counts) {
+    if (kHasFaces != 0u) return lightOfWord(word);
 #ifdef PFVOX_VIEW_PROBES
     return indirectAt(view, part).indirect;
 #else
@@ -29,12 +31,13 @@ vec3 radianceAlong(ViewParameters view, Scene scene, Ray ray, uint key, inout Ra
         if (ground < hit.t) return walk.through * groundRadiance(view, scene, walk.ray, ground, counts);
         if (hit.instance == kNoInstance) return walk.through * skyRadiance(view, ray.direction);
         Surface surface = surfaceOf(scene, walk.ray, hit);
+        Ray before = walk.ray;
         bool enters;
         if (goOnThroughGlass(scene, walk, hit, surface, materialOf(scene, surface), enters)) continue;
         SurfacePart part = partOf(scene, surface);
         if (part.material.type == kMaterialMetal) part.material.type = 0u;  // what it mirrors is about as bright
         vec3 sun = sunFraction(view, scene, part, counts);
-        vec3 indirect = indirectOf(view, scene, part, key, counts);
+        vec3 indirect = indirectOf(view, scene, part, faceWord(view, scene, before, hit), key, counts);
         return walk.through * radianceFrom(view, part, -ray.direction, sun, indirect);
     }
     return vec3(0.0);
@@ -87,7 +90,7 @@ vec3 glassShine(ViewParameters view, Scene scene, Ray ray, SeenShine shine, uvec
     }
     if (part.material.transparency < 1.0) {
         vec3 sun = sunFraction(view, scene, part, counts);
-        vec3 indirect = indirectOf(view, scene, part, joinHash(pixelKey(pixel), 5u), counts);
+        vec3 indirect = indirectOf(view, scene, part, shine.ambient, joinHash(pixelKey(pixel), 5u), counts);
         radiance += (1.0 - reflectance) * radianceFrom(view, part, -ray.direction, sun, indirect);
     }
     return radiance;

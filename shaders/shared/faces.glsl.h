@@ -75,10 +75,11 @@ PFVOX_FUNCTION vec3 unpackRgb9e5(uint word) {
 
 // Values of a scene.
 PFVOX_STRUCT(FaceField) {
-    uvec2 values;      // uint[] by face
-    uvec2 parts;       // uint[]: of divided faces, each row by row
-    uvec2 firstMeans;  // uint[] by record of the instance
-    uvec2 means;       // uint[]: beside the slots of a model, once an instance
+    uvec2 values;  // uint[] by face
+    uvec2 parts;   // uint[]: of divided faces, each row by row
+    uvec2 means;   // uint[]: beside the slots of a model, once an instance
+    uint reserved0;
+    uint reserved1;
 };
 PFVOX_SIZE(FaceField, 32);
 

@@ -57,7 +57,7 @@ PFVOX_STRUCT(InstanceRecord) {
     uint model;
     uint id;  // position in the list of all instances of the scene, hidden ones counted
     uint firstFace;  // number of its first value (shared/faces.glsl.h)
-    uint reserved0;
+    uint firstMean;  // and of its first mean
 };
 PFVOX_SIZE(InstanceRecord, 64);
 PFVOX_OFFSET(InstanceRecord, model, 48);

@@ -59,8 +59,11 @@ PFVOX_STRUCT(ViewParameters) {
     uvec2 emitters;       // EmitterFace[]
     uint emitterCount;
     float emitterPower;   // as in BakeScene
+    uvec2 faces;          // FaceField; 0 = there is no light on faces
+    uint reserved0;
+    uint reserved1;
 };
-PFVOX_SIZE(ViewParameters, 208);
+PFVOX_SIZE(ViewParameters, 224);
 PFVOX_OFFSET(ViewParameters, cameraUp, 48);
 PFVOX_OFFSET(ViewParameters, sunIrradiance, 80);
 PFVOX_OFFSET(ViewParameters, skyGround, 128);
@@ -85,7 +88,7 @@ PFVOX_STRUCT(SeenPixel) {
     uint cell;       // of what was hit, a voxel or a level of detail: see packCell
     uint sun;        // fraction of the sun that arrives, R11G11B10F
     uint through;    // fraction that glass in front lets through, R11G11B10F
-    uint ambient;    // I as rays guess it, R11G11B10F; where probes do not say it
+    uint ambient;    // I of its face or as rays guess it, RGB9E5; where probes do not say it
 };
 PFVOX_SIZE(SeenPixel, 32);
 
@@ -96,7 +99,7 @@ PFVOX_STRUCT(SeenShine) {
     uint material;
     uint normal;        // as in SeenPixel
     uint cell;          // as in SeenPixel
-    uint reserved0;
+    uint ambient;       // as in SeenPixel
 };
 PFVOX_SIZE(SeenShine, 32);
 

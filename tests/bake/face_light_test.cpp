@@ -23,7 +23,7 @@ struct LitFaces {
         for (std::uint64_t i = first; i < end; ++i) sum += glm::dvec3(shared::unpackRgb9e5(faces.light.values[i]));
         return (sum.x + sum.y + sum.z) / (3.0 * static_cast<double>(end - first));
     }
-    bool hasValue(std::size_t face) const { return faces.light.levels[face] != kNoFaceLevel; }
+    bool hasValue(std::size_t face) const { return faces.light.levels[face] != kNoFaceValue; }
 };
 
 class FaceLightTest : public BakeTest {

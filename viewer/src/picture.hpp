@@ -73,7 +73,11 @@ struct PictureInput {
                  const GpuEmitters* lamps = nullptr)
         : scene(drawn), probes(light), emitters(lamps) {}
     const gpu::Scene& scene;
-    const ShownProbes* probes;    ///< null = none
+    const ShownProbes* probes;  ///< null = none
+    /// Light on faces; null = none. It goes before that of probes.
+    const gpu::GpuFaces* faces() const {
+        return probes != nullptr && probes->faces ? &*probes->faces : nullptr;
+    }
     const GpuEmitters* emitters;  ///< what glows where no probes say it (isGuessed); null = nothing
 };
 

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <pfvox/gpu_faces.hpp>
 #include <pfvox/gpu_probes.hpp>
 #include <pfvox/probe_file.hpp>
 #include <pfvox/scene.hpp>
@@ -27,6 +28,7 @@ struct ShownProbes {
     std::vector<ShownProbe> probes;
     bool ofThisScene = true;  ///< baked for the scene as it is now
     gpu::GpuProbes field;
+    std::optional<gpu::GpuFaces> faces = {};  ///< light on the faces of the scene that is shown
 };
 
 /// "court.toml" -> "court.pf_probe", whether or not it is there; likewise for a .pf_vox file. Of a scene

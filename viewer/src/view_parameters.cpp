@@ -70,7 +70,10 @@ shared::ViewParameters viewParametersOf(const ViewCamera& camera, const PictureS
             .groundRadius = ground.w,
             .emitters = emitters != nullptr ? emitters->address() : glm::uvec2(0),
             .emitterCount = emitters != nullptr ? emitters->count() : 0,
-            .emitterPower = emitters != nullptr ? emitters->power() : 0.0f};
+            .emitterPower = emitters != nullptr ? emitters->power() : 0.0f,
+            .faces = input.faces() != nullptr ? input.faces()->address() : glm::uvec2(0),
+            .reserved0 = 0,
+            .reserved1 = 0};
 }
 
 PictureStatistics statisticsOf(const ViewCounts& counts, std::uint64_t cameraRays) {

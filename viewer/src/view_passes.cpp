@@ -39,6 +39,11 @@ std::vector<Pass> passesOf(const PictureInput& input, const PictureSettings& set
     return passes;
 }
 
+/// Whether probes say what is indirect.
+bool asksProbes(const PictureInput& input) {
+    return input.probes != nullptr && input.faces() == nullptr;
+}
+
 std::span<const std::uint32_t> codeOf(Pass pass, bool probes) {
     switch (pass) {
         case Pass::Geometry:
@@ -109,17 +114,18 @@ Result<void> SeenBuffers::ensure(gpu::Device& device, const PictureInput& input,
 Result<const gpu::Program*> ViewPasses::program(gpu::Device& device, const Key& key) {
     const auto found = programs_.find(key);
     if (found != programs_.end()) return &found->second;
-    const auto [pass, probes, glass] = key;
-    const std::uint32_t constant = glass ? 1 : 0;
+    const auto [pass, probes, glass, faces] = key;
+    const std::array<std::uint32_t, 2> constants{glass, faces};
     PFVOX_TRY(gpu::Program, made,
               device.createProgram(codeOf(pass, probes), sizeof(shared::ViewPushConstants),
-                                   "view " + std::string(toString(pass)), {&constant, 1}));
+                                   "view " + std::string(toString(pass)), constants));
     return &programs_.emplace(key, std::move(made)).first->second;
 }
 
 Result<void> ViewPasses::add(gpu::Device& device, const PictureInput& input, const PictureSettings& settings,
                              const PassTargets& targets, PassList& list) {
-    const bool probes = input.probes != nullptr;
+    const bool probes = asksProbes(input);
+    const bool faces = input.faces() != nullptr;
     const bool glass = input.scene.statistics().hasGlass;
     const glm::uvec3 groups = groupsFor(settings.width, targets.rowCount);
     shared::ViewPushConstants push{.scene = input.scene.address(),
@@ -134,7 +140,7 @@ Result<void> ViewPasses::add(gpu::Device& device, const PictureInput& input, con
                                    .reserved0 = 0};
     for (; push.sampleIndex < settings.samplesPerPixel; ++push.sampleIndex) {
         for (const Pass pass : passesOf(input, settings)) {
-            PFVOX_TRY(const gpu::Program* const, made, program(device, {pass, probes, glass}));
+            PFVOX_TRY(const gpu::Program* const, made, program(device, {pass, probes, glass, faces}));
             list.add(pass, *made, push, groups);
         }
     }

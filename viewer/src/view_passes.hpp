@@ -73,7 +73,7 @@ class ViewPasses {
                      const PassTargets& targets, PassList& list);
 
   private:
-    using Key = std::tuple<Pass, bool, bool>;  ///< with probes, with glass
+    using Key = std::tuple<Pass, bool, bool, bool>;  ///< with probes, with glass, with faces
     Result<const gpu::Program*> program(gpu::Device& device, const Key& key);
     std::map<Key, gpu::Program> programs_;
 };

@@ -5,17 +5,15 @@
 // The layout is that of shaders/shared/faces.glsl.h.
 #pragma once
 
+#include <pfvox/face_light.hpp>
 #include <pfvox/gpu_scene.hpp>
 #include <vector>
 
 namespace pfvox {
 
-/// A face that another instance covers: it has no value.
-inline constexpr std::uint8_t kNoFaceLevel = 255;
-
 /// I = E / pi of indirect light of all faces of a scene, in the order of gpu::Scene::faces().
 struct FaceValues {
-    std::vector<std::uint8_t> levels;   ///< a face: 0 to 3 for 4^level values, or kNoFaceLevel
+    std::vector<std::uint8_t> levels;   ///< a face: 0 to 3 for 4^level values, or kNoFaceValue
     std::vector<std::uint32_t> values;  ///< RGB9E5; those of a face row by row
 };
 
@@ -33,8 +31,8 @@ struct GpuFaceStatistics {
 /// Immutable once made. Keeps its device alive.
 class GpuFaces {
   public:
-    /// `scene` was built with faces. Errors: BadStructure (the values are not those of this scene), GpuOutOfMemory,
-    /// GpuLost.
+    /// `scene` was built with faces. Errors: BadStructure (the values are not those of this scene),
+    /// GpuOutOfMemory, GpuLost.
     static Result<GpuFaces> upload(Device& device, const Scene& scene, const FaceValues& values);
 
     /// Device address of the shared::FaceField.
@@ -42,17 +40,15 @@ class GpuFaces {
     const GpuFaceStatistics& statistics() const { return statistics_; }
 
   private:
-    GpuFaces(Buffer table, Buffer values, Buffer parts, Buffer firstMeans, Buffer means)
+    GpuFaces(Buffer table, Buffer values, Buffer parts, Buffer means)
         : table_(std::move(table)),
           values_(std::move(values)),
           parts_(std::move(parts)),
-          firstMeans_(std::move(firstMeans)),
           means_(std::move(means)) {}
 
     Buffer table_;
     Buffer values_;
     Buffer parts_;
-    Buffer firstMeans_;
     Buffer means_;
     GpuFaceStatistics statistics_;
 };

@@ -80,6 +80,7 @@ struct SceneOptions {
 struct PlacedFaces {
     std::uint32_t instance = 0;  ///< its record on the device
     std::uint32_t firstFace = 0;
+    std::uint32_t firstMean = 0;  ///< of levels of detail, likewise
     const OctreeModel* model = nullptr;
     const FaceIndex* index = nullptr;          ///< lives as long as the scene
     Affine frameFromModel = identityAffine();  ///< voxels to meters, from the scene's origin

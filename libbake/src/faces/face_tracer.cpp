@@ -368,7 +368,7 @@ Result<TracedFaces> FaceTracer::assemble(const Values& whole, const std::optiona
     std::uint64_t next = 0;
     for (std::uint32_t face = 0; face < faces; ++face) {
         const bool none = sums[face].w <= 0.0f;
-        result.light.levels[face] = none ? kNoFaceLevel : static_cast<std::uint8_t>(levels[face]);
+        result.light.levels[face] = none ? kNoFaceValue : static_cast<std::uint8_t>(levels[face]);
         result.firstValue[face] = next;
         if (!none) next += std::uint64_t{1} << (2 * levels[face]);
     }

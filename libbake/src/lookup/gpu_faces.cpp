@@ -30,7 +30,7 @@ Result<Words> wordsOf(const FaceValues& light) {
     std::size_t next = 0;
     for (std::size_t face = 0; face < faces; ++face) {
         const std::uint32_t level = light.levels[face];
-        if (level == kNoFaceLevel) continue;
+        if (level == kNoFaceValue) continue;
         const std::size_t count = std::size_t{1} << (2 * level);
         if (level > shared::kMaxFaceLevel || next + count > light.values.size())
             return fail(ErrorCode::BadStructure, "light of faces has other values than its levels say");
@@ -40,8 +40,10 @@ Result<Words> wordsOf(const FaceValues& light) {
         } else {
             const std::uint64_t at = words.parts.size() / 4;
             if (at > shared::kFacePartMask)
-                return fail(ErrorCode::GpuOutOfMemory, "more faces are divided than the device's words can count");
-            words.faces[face] = shared::kFaceEscape | level << shared::kFaceLevelShift | static_cast<std::uint32_t>(at);
+                return fail(ErrorCode::GpuOutOfMemory,
+                            "more faces are divided than the device's words can count");
+            words.faces[face] =
+                shared::kFaceEscape | level << shared::kFaceLevelShift | static_cast<std::uint32_t>(at);
             ++words.divided;
             glm::vec3 sum(0.0f);
             for (std::size_t i = 0; i < count; ++i) {
@@ -151,38 +153,31 @@ Result<GpuFaces> GpuFaces::upload(Device& device, const Scene& scene, const Face
         return fail(ErrorCode::BadStructure, fmt::format("there is light for {} faces, and the scene has {}",
                                                          light.levels.size(), scene.faceCount()));
     PFVOX_TRY(const Words, words, wordsOf(light));
-    std::vector<std::uint32_t> firstMeans;
     std::uint64_t meanCount = 0;
-    for (const PlacedFaces& placed : scene.faces()) {
-        if (firstMeans.size() <= placed.instance) firstMeans.resize(placed.instance + std::size_t{1});
-        firstMeans[placed.instance] = static_cast<std::uint32_t>(meanCount);
-        meanCount += placed.table->slots.size();
-    }
-    if (meanCount > 0xffffffffu)
-        return fail(ErrorCode::GpuOutOfMemory, "the scene has more faces than the device can count");
+    for (const PlacedFaces& placed : scene.faces()) meanCount += placed.table->slots.size();
     std::vector<std::uint32_t> means(meanCount, shared::kFaceNoValue);
     tbb::parallel_for(std::size_t{0}, scene.faces().size(), [&](std::size_t i) {
         const PlacedFaces& placed = scene.faces()[i];
-        const auto own = std::span(means).subspan(firstMeans[placed.instance], placed.table->slots.size());
+        const auto own = std::span(means).subspan(placed.firstMean, placed.table->slots.size());
         MeanMaker(*placed.table, words, placed.firstFace, own).run();
     });
     PFVOX_TRY(Buffer, table, device.createBuffer(sizeof(shared::FaceField), "light of faces"));
     PFVOX_TRY(Buffer, values, bufferOf(device, words.faces, "values of faces"));
     PFVOX_TRY(Buffer, parts, bufferOf(device, words.parts, "values of divided faces"));
-    PFVOX_TRY(Buffer, first, bufferOf(device, firstMeans, "first means of faces"));
     PFVOX_TRY(Buffer, meanWords, bufferOf(device, means, "means of faces"));
     const shared::FaceField record{.values = values.addressWords(),
                                    .parts = parts.addressWords(),
-                                   .firstMeans = first.addressWords(),
-                                   .means = meanWords.addressWords()};
+                                   .means = meanWords.addressWords(),
+                                   .reserved0 = 0,
+                                   .reserved1 = 0};
     PFVOX_CHECK(device.upload(table, 0, bytesOf(record)));
     PFVOX_CHECK(device.flush());
-    GpuFaces faces(std::move(table), std::move(values), std::move(parts), std::move(first), std::move(meanWords));
+    GpuFaces faces(std::move(table), std::move(values), std::move(parts), std::move(meanWords));
     faces.statistics_ = {.faces = light.levels.size(),
                          .divided = words.divided,
                          .values = light.values.size(),
                          .valueBytes = 4 * (words.faces.size() + words.parts.size()),
-                         .meanBytes = 4 * (means.size() + firstMeans.size())};
+                         .meanBytes = 4 * means.size()};
     return faces;
 }
 

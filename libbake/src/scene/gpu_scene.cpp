@@ -244,27 +244,31 @@ class Scene::ModelPlacer {
     std::vector<std::shared_ptr<const PlacedModel>> placed_;
 };
 
-/// Gives the faces of each instance their place in the list of all, in the order of instances, and says how
-/// many there are.
+/// Gives the faces of each instance their place in the list of all, in the order of instances. How many there
+/// are, or means if these are more.
 std::uint64_t Scene::numberFaces(SceneRecords& records, const PlacedModels& placed,
                                  std::vector<PlacedFaces>& faces) {
     std::vector<std::size_t> order(records.instances.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::ranges::sort(order, {}, [&](std::size_t i) { return records.instances[i].id; });
     std::uint64_t next = 0;
+    std::uint64_t nextMean = 0;
     for (const std::size_t i : order) {
         shared::InstanceRecord& record = records.instances[i];
         const PlacedModel& model = *placed[record.model];
         record.firstFace = static_cast<std::uint32_t>(next);
+        record.firstMean = static_cast<std::uint32_t>(nextMean);
         faces.push_back({.instance = static_cast<std::uint32_t>(i),
                          .firstFace = record.firstFace,
+                         .firstMean = record.firstMean,
                          .model = model.used.model,
                          .index = &model.faces->index,
                          .frameFromModel = records.frameFromModel[i],
                          .table = model.faces});
         next += model.faces->index.faceCount;
+        nextMean += model.faces->slots.size();
     }
-    return next;
+    return std::max(next, nextMean);
 }
 
 Result<Scene> Scene::build(Device& device, std::span<const ScenePart> parts, Diagnostics& diagnostics,
@@ -287,9 +291,8 @@ Result<Scene> Scene::build(Device& device, std::span<const ScenePart> parts, Dia
                 sizeof(glm::uvec2) * (model->faces->cells.size() + model->faces->slots.size());
     }
     std::vector<PlacedFaces> faces;
-    std::uint64_t faceCount = 0;
     if (options.faces) {
-        faceCount = numberFaces(records, placed, faces);
+        const std::uint64_t faceCount = numberFaces(records, placed, faces);
         if (faceCount > 0xffffffffu)
             return fail(ErrorCode::GpuOutOfMemory, "the scene has " + std::to_string(faceCount) +
                                                        " faces; light is baked for at most 4 billion");
@@ -311,7 +314,7 @@ Result<Scene> Scene::build(Device& device, std::span<const ScenePart> parts, Dia
     scene.bounds_ = records.bounds;
     scene.origin_ = options.origin;
     scene.faces_ = std::move(faces);
-    scene.faceCount_ = static_cast<std::uint32_t>(faceCount);
+    for (const PlacedFaces& placedFaces : scene.faces_) scene.faceCount_ += placedFaces.index->faceCount;
     scene.statistics_ = statistics;
     return scene;
 }

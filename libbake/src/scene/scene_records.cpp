@@ -140,7 +140,7 @@ class RecordMaker {
                               .model = modelIndex(used),
                               .id = id,
                               .firstFace = 0,
-                              .reserved0 = 0});
+                              .firstMean = 0});
         Affine frameFromModel = worldFromModel;
         frameFromModel[3] -= origin_;
         frames_.push_back(frameFromModel);

@@ -100,17 +100,18 @@ struct Canvas {
         PFVOX_TRY(gpu::Buffer, pixels, device.createBuffer(bytes, "verify pixels"));
         PFVOX_CHECK(device.upload(scene, 0, gpu::bytesOf(bakeSceneOf(input, settings, lamps))));
         PFVOX_CHECK(device.upload(view, 0, gpu::bytesOf(viewOf(input.camera, input.scene, settings))));
-        const shared::VerifyPush push{.scene = scene.addressWords(),
-                                      .field = input.probes != nullptr ? input.probes->address() : glm::uvec2(0),
-                                      .view = view.addressWords(),
-                                      .pixels = pixels.addressWords(),
-                                      .faces = input.faces != nullptr ? input.faces->address() : glm::uvec2(0),
-                                      .firstSample = 0,
-                                      .sampleCount = 0,
-                                      .firstRow = 0,
-                                      .reserved0 = 0,
-                                      .reserved1 = 0,
-                                      .reserved2 = 0};
+        const shared::VerifyPush push{
+            .scene = scene.addressWords(),
+            .field = input.probes != nullptr ? input.probes->address() : glm::uvec2(0),
+            .view = view.addressWords(),
+            .pixels = pixels.addressWords(),
+            .faces = input.faces != nullptr ? input.faces->address() : glm::uvec2(0),
+            .firstSample = 0,
+            .sampleCount = 0,
+            .firstRow = 0,
+            .reserved0 = 0,
+            .reserved1 = 0,
+            .reserved2 = 0};
         return Canvas{std::move(lamps), std::move(scene), std::move(view), std::move(pixels), push};
     }
 
