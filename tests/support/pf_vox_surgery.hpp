@@ -73,7 +73,8 @@ inline Bytes closeFile(OpenFile open, bool compressed = false) {
         part.entry.offset = file.size();
         part.entry.rawBytes = part.raw.size();
         // The maps in DATA of a probe file have hashes of their own.
-        const bool hasHash = std::string_view(part.entry.fourcc.data(), 4) != "DATA";
+        const bool hasHash = std::string_view(part.entry.fourcc.data(), 4) != "DATA" &&
+                             std::string_view(part.entry.fourcc.data(), 4) != "FDAT";
         part.entry.rawHash = hasHash ? io::xxh3_64(std::as_bytes(std::span(part.raw))) : 0;
         if (compressed && hasHash) {
             std::vector<std::uint8_t> frame(ZSTD_compressBound(part.raw.size()));

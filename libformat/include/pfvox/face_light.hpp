@@ -60,19 +60,19 @@ struct FaceBakeSettings {
 };
 
 /// Calls visit(ProbeSetting, value of the first settings, value of the second ...) for each setting. Ids are
-/// those of the entries in a file.
+/// those of the entries in a file; a setting that probes have, too, has their id.
 template <class Visit, class... Settings>
 void forEachFaceSetting(const Visit& visit, Settings&... of) {
-    visit(ProbeSetting{1, "seed", "--seed"}, of.seed...);
-    visit(ProbeSetting{2, "baseRays", "linked rays"}, of.baseRays...);
-    visit(ProbeSetting{3, "sweeps", "sweeps"}, of.sweeps...);
-    visit(ProbeSetting{4, "minRays", "least rays"}, of.minRays...);
-    visit(ProbeSetting{5, "maxRays", "most rays"}, of.maxRays...);
-    visit(ProbeSetting{6, "noiseTarget", "--noise"}, of.noiseTarget...);
-    visit(ProbeSetting{7, "maxBounces", "--bounces"}, of.maxBounces...);
-    visit(ProbeSetting{8, "sampling", "light sampling"}, of.sampling...);
-    visit(ProbeSetting{9, "divide", "divided faces"}, of.divide...);
-    visit(ProbeSetting{10, "codec", "codec of faces"}, of.codec...);
+    visit(ProbeSetting{kBouncesId, "maxBounces", "--bounces"}, of.maxBounces...);
+    visit(ProbeSetting{3, "sampling", "light sampling"}, of.sampling...);
+    visit(ProbeSetting{16, "seed", "--seed"}, of.seed...);
+    visit(ProbeSetting{17, "baseRays", "linked rays"}, of.baseRays...);
+    visit(ProbeSetting{18, "sweeps", "sweeps"}, of.sweeps...);
+    visit(ProbeSetting{19, "minRays", "least rays"}, of.minRays...);
+    visit(ProbeSetting{20, "maxRays", "most rays"}, of.maxRays...);
+    visit(ProbeSetting{21, "noiseTarget", "--noise"}, of.noiseTarget...);
+    visit(ProbeSetting{22, "divide", "divided faces"}, of.divide...);
+    visit(ProbeSetting{23, "codec", "codec of faces"}, of.codec...);
 }
 /// In the order of forEachFaceSetting(); empty = the same settings.
 std::vector<ProbeSettingDifference> differencesOf(const FaceBakeSettings& first,
@@ -112,14 +112,16 @@ struct FaceChunkPlace {
 
 /// What is known about a chunk without its values.
 struct FaceChunkRecord {
-    std::uint64_t valueCount = 0;  ///< of all its faces
+    std::uint64_t valueCount = 0;  ///< of all its faces; below 2^32
     std::optional<float> noise;    ///< relative standard error of the values; nothing = unknown
     float cappedFraction = 0.0f;   ///< fraction of the values that stopped at maxRays
     ContentKey inputHash;          ///< of all that decided the content; zero = unknown
-    /// Bytes in the file. Writers compute this and what follows, and take no notice of what stands here.
-    std::uint64_t storedBytes = 0;
-    std::uint64_t hash = 0;  ///< xxh3-64 of levels and values as they are read; equal hashes = equal light
-    bool operator==(const FaceChunkRecord&) const = default;
+    /// xxh3-64 of levels and values as they are read: equal hashes = equal light. Writers compute this and
+    /// what follows, and take no notice of what stands here.
+    std::uint64_t hash = 0;
+    std::uint64_t storedBytes = 0;  ///< in the file, after compression
+    /// Of all but storedBytes, which is not the light's but the compressor's.
+    bool operator==(const FaceChunkRecord& other) const;
 };
 
 /// Everything about light on faces but the light.
@@ -141,6 +143,9 @@ struct FaceChunk {
     std::vector<std::uint32_t> values;  ///< of each face 4^level, rows along axis (a + 1) % 3 of its axis a
     bool operator==(const FaceChunk&) const = default;
 };
+
+/// What FaceChunkRecord::hash of this light must be. Precondition: its values are in their stored form.
+std::uint64_t hashOf(const FaceChunk& chunk);
 
 /// Light on faces in memory.
 struct FaceLight {

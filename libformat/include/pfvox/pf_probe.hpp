@@ -1,5 +1,5 @@
-// PF_PROBE 1.1: a regular grid of light-field probes, in memory and on disk. The bytes are described in
-// docs/format-pf_probe.md.
+// PF_PROBE 1.2: a regular grid of light-field probes and the light on faces of voxels, in memory and on disk.
+// The bytes are described in docs/format-pf_probe.md.
 //
 //     baker -> ProbeData, probe by probe -> [ProbeFileWriter] -> file -> [ProbeFileReader] -> viewer
 //                                  ProbeField -> [encodePfProbe] -> bytes -> [decodePfProbe] -> ProbeField
@@ -19,6 +19,7 @@
 #include <cstdint>
 #include <optional>
 #include <pfvox/error.hpp>
+#include <pfvox/face_light.hpp>
 #include <pfvox/limits.hpp>
 #include <pfvox/math.hpp>
 #include <pfvox/pf_vox.hpp>
@@ -33,6 +34,7 @@ namespace pfvox {
 
 inline constexpr std::uint16_t kPfProbeVersionMajor = 1;  ///< another one cannot be read
 inline constexpr std::uint16_t kPfProbeVersionMinor = 1;  ///< of what is written; later ones can be read
+inline constexpr std::uint16_t kPfProbeFacesMinor = 2;    ///< of what is written with light on faces
 
 /// The maps that a probe may have. Their words are those that the GPU reads.
 enum class ProbeLayer : std::uint8_t {
@@ -108,8 +110,10 @@ struct ProbeRange {
 
 /// Everything about a field but its probes.
 struct ProbeFieldInfo {
-    ProbeGrid grid;                  ///< where probes stand
-    ProbeRange range;                ///< the probes of this file: a shard has a part of the grid's
+    /// Where probes stand. Counts of 0, all three: there are none, which a file with light on faces may say.
+    ProbeGrid grid;
+    /// The probes of this file: a shard has a part of the grid's; with light on faces it may be empty.
+    ProbeRange range;
     ProbeResolution resolution;      ///< edges of the maps
     DepthEncoding depth;             ///< meaning of the depth codes
     std::uint32_t lightContent = 0;  ///< kLightOf... bits
@@ -197,6 +201,7 @@ struct ProbeField {
     ProbeFieldInfo info;                     ///< all but the probes
     std::vector<ProbeData> probes;           ///< probe info.range.first and those behind it
     std::optional<ProximityGrid> proximity;  ///< none in shards
+    std::optional<FaceLight> faces = {};     ///< what was decoded has the values as they are stored
     bool operator==(const ProbeField&) const = default;
 };
 /// How a file is written.

@@ -1,5 +1,5 @@
-// Probe files read and written one probe at a time: a bake of 512 probes of 8 MB never is in memory as a
-// whole.
+// Probe files read and written one probe, or one chunk of light on faces, at a time: a bake of 512 probes of
+// 8 MB never is in memory as a whole.
 //
 //     ProbeFileWriter::open -> reuse / append (any order, any thread) -> finish -> out.pf_probe
 //     ProbeFileReader::open -> readLayer / readProbe (any order, any thread)
@@ -25,6 +25,14 @@ struct ProbeFrame {
     std::uint64_t rawHash = 0;      ///< xxh3-64 of the words
 };
 
+/// How a chunk of light on faces lies in its file: levels, then planes of values, one behind the other.
+struct FaceFrames {
+    std::uint64_t offsetBytes = 0;
+    std::uint32_t levelBytes = 0;                   ///< of the runs of levels, before compression
+    std::array<std::uint32_t, 6> storedBytes = {};  ///< of the runs, then of each plane
+    bool operator==(const FaceFrames&) const = default;
+};
+
 /// Random access to a file. Opening reads and checks everything but the maps; each map is checked when it is
 /// read. All const functions may be called from several threads at once.
 class ProbeFileReader {
@@ -44,6 +52,17 @@ class ProbeFileReader {
     std::uint16_t versionMinor() const;                     ///< of the format, as the file has it
     std::uint64_t fileBytes() const;                        ///< of the file
     const std::optional<ProximityGrid>& proximity() const;  ///< none in shards
+
+    /// Light on faces but for the light, if the file has it.
+    const std::optional<FaceLightInfo>& faces() const;
+
+    /// Precondition of the two that follow: faces()->range.contains(chunk).
+    /// The light of a chunk, checked. Memory is taken from the limit only while it is read. Errors: as
+    /// readLayer; BadValue.
+    Result<FaceChunk> readFaceChunk(std::uint32_t chunk) const;
+    FaceFrames faceFrames(std::uint32_t chunk) const;  ///< where it lies
+    /// The frames as they are stored, unchecked. Errors: FileNotReadable, Truncated.
+    Result<std::vector<std::byte>> readStoredFaces(std::uint32_t chunk) const;
 
     /// Precondition of all that follow: info().range.contains(probe).
     const ProbeRecord& record(std::uint32_t probe) const;
@@ -84,7 +103,9 @@ std::vector<Finding> validatePfProbeFile(const std::filesystem::path& file,
 std::filesystem::path probeJournalPath(const std::filesystem::path& output);
 /// How a file is begun.
 struct ProbeWriteSettings {
-    ProbeEncodeSettings encode;    ///< key and compression
+    ProbeEncodeSettings encode;  ///< key and compression
+    /// The file has light on faces: of the chunks of this range. `chunks` is not used.
+    std::optional<FaceLightInfo> faces = {};
     bool resume = false;           ///< take what a journal beside the output holds; else begin a new one
     bool replaceReadOnly = false;  ///< replace an output that is read-only, too
 };
@@ -92,8 +113,8 @@ struct ProbeWriteSettings {
 /// Writes a file probe by probe.
 class ProbeFileWriter {
   public:
-    /// Begins or resumes. A journal of another grid, range, resolution or depth encoding is not used, and one
-    /// that is damaged only up to the damage; both are reported ("probe-journal-other",
+    /// Begins or resumes. A journal of another grid, range, resolution, depth encoding or other faces is not
+    /// used, and one that is damaged only up to the damage; both are reported ("probe-journal-other",
     /// "probe-journal-damaged"). Errors: those of checkProbeInfo; FileNotWritable (also while another process
     /// writes the same journal, and for an output that could not be replaced in the end).
     static Result<ProbeFileWriter> open(const std::filesystem::path& output, const ProbeFieldInfo& info,
@@ -112,14 +133,24 @@ class ProbeFileWriter {
     /// checkProbeData, FileNotWritable.
     Result<void> append(std::uint32_t probe, const ProbeData& data);
 
+    /// The same three for chunks of light on faces. The record gets its counts and hash here. Errors of
+    /// appendFaces: those of checkFaceChunk, BadReference, FileNotWritable.
+    bool reuseFaces(std::uint32_t chunk, const ContentKey& inputHash);
+    Result<void> appendFaces(std::uint32_t chunk, const FaceChunk& light, const FaceChunkRecord& record);
+    std::vector<std::uint32_t> missingFaces() const;
+    /// A chunk that was appended or reused, as a reader of the file will have it, and what is known about it.
+    /// Thread-safe. Errors: as readProbe.
+    Result<FaceChunk> readFaceChunk(std::uint32_t chunk) const;
+    Result<FaceChunkRecord> faceRecord(std::uint32_t chunk) const;
+
     /// Probes of the range that are neither appended nor reused, ascending.
     std::vector<std::uint32_t> missing() const;
     /// A probe that was appended or reused, read back. Thread-safe. Errors: BadReference, FileNotReadable,
     /// ChecksumMismatch.
     Result<ProbeData> readProbe(std::uint32_t probe) const;
 
-    /// Writes the output and removes the journal. Errors: BadStructure (probes are missing: they are named),
-    /// those of checkProximityGrid, FileNotWritable. After an error the journal is still there.
+    /// Writes the output and removes the journal. Errors: BadStructure (probes or chunks are missing: they
+    /// are named), those of checkProximityGrid, FileNotWritable. After an error the journal is still there.
     Result<void> finish(const std::optional<ProximityGrid>& proximity);
 
   private:
@@ -135,8 +166,8 @@ struct ProbeMergeSettings {
     bool allowPart = false;                  ///< the output may be a shard again, as long as it has no holes
 };
 
-/// Joins shards, in any order, to one file. Maps are copied as they are stored, so that the bytes are those
-/// that an unsharded bake would have written. Different devices are allowed and reported
+/// Joins shards, in any order, to one file. Maps and light on faces are copied as they are stored, so that
+/// the bytes are those that an unsharded bake would have written. Different devices are allowed and reported
 /// ("probe-merge-devices"). Errors: BadStructure when the shards disagree (each difference is named; where
 /// only content keys of one device do, a setting that the files do not keep does), or probes are missing or
 /// in two shards (they are named); those of ProbeFileReader::open; FileNotWritable.

@@ -14,7 +14,7 @@ namespace pfvox {
 struct ProbeGrid {
     glm::vec3 start{0.0f};   ///< position of probe (0, 0, 0), metres
     glm::vec3 step{1.0f};    ///< distance of neighbors along each axis, metres, > 0
-    glm::uvec3 counts{1u};   ///< each at least 1, the product below 2^32
+    glm::uvec3 counts{1u};   ///< each at least 1, the product below 2^32; all 0 = no probes
     glm::dvec3 origin{0.0};  ///< in the world, metres: what all else of a field counts from (frameOrigin)
 
     std::uint64_t probeCount() const { return std::uint64_t{counts.x} * counts.y * counts.z; }

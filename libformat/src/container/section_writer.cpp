@@ -18,10 +18,11 @@ namespace {
 struct Stored {
     layout::Section entry{};
     std::vector<std::uint8_t> bytes;
+    bool isAnnounced = false;
 };
 
 std::uint64_t alignUp(std::uint64_t value) {
-    return (value + layout::kAlignment - 1) & ~(layout::kAlignment - 1);
+    return value + gapBefore(value);
 }
 
 Result<Stored> store(SectionContent section, int level) {
@@ -33,7 +34,8 @@ Result<Stored> store(SectionContent section, int level) {
     stored.entry.count = section.count;
     stored.entry.rawBytes = section.announcedBytes.value_or(raw.size());
     stored.entry.storedBytes = stored.entry.rawBytes;
-    if (section.announcedBytes) return stored;
+    stored.isAnnounced = section.announcedBytes.has_value();
+    if (stored.isAnnounced) return stored;
     stored.entry.rawHash = io::xxh3_64(raw);
     if (section.compress) {
         PFVOX_TRY(auto, frame, compressFrame(raw, level, section.texture, raw.size()));
@@ -88,13 +90,15 @@ Result<std::vector<std::byte>> writeSections(std::vector<SectionContent> section
     const std::uint64_t headBytes = sizeof header + stored.size() * sizeof(layout::Section);
     std::uint64_t end = headBytes;
     std::uint64_t ours = end;  // without announced bytes
+    bool isOurs = true;
     std::vector<layout::Section> table;
     table.reserve(stored.size());
     for (const Stored& section : stored) {
         table.push_back(section.entry);
         table.back().offset = alignUp(end);
         end = table.back().offset + section.entry.storedBytes;
-        ours = table.back().offset + section.bytes.size();
+        if (isOurs) ours = table.back().offset + section.bytes.size();
+        isOurs = isOurs && !section.isAnnounced;
     }
     header.fileBytes = end;
 

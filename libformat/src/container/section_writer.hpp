@@ -23,8 +23,8 @@ struct SectionContent {
     bool compress = true;
     Texture texture = Texture::General;
     std::vector<std::uint8_t> raw = {};
-    /// Of the last section alone: the caller writes so many bytes behind the others. They have hashes of
-    /// their own.
+    /// Of the last sections alone: the caller writes so many bytes behind the others, zeros before each that
+    /// does not begin at a multiple of 64 (gapBefore). They have hashes of their own.
     std::optional<std::uint64_t> announcedBytes = {};
 };
 
@@ -55,6 +55,11 @@ struct FileTraits {
     ContentKey contentKey;
     int zstdLevel = 3;
 };
+
+/// Zeros between something that ends here and the next section.
+constexpr std::size_t gapBefore(std::uint64_t offset) {
+    return static_cast<std::size_t>(-offset % layout::kAlignment);
+}
 
 /// The bytes of a whole file, or of all but the announced ones. A section is stored compressed only where
 /// that is smaller. Errors: LimitExceeded when the section table outgrows its fields; Internal when zstd

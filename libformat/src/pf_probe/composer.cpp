@@ -1,6 +1,9 @@
 #include "pf_probe/composer.hpp"
 
+#include <fmt/format.h>
+
 #include "container/section_writer.hpp"
+#include "pf_probe/face_section.hpp"
 #include "pf_probe/frame_codec.hpp"
 #include "pf_probe/probe_settings.hpp"
 
@@ -16,11 +19,27 @@ constexpr int kTableZstdLevel = 3;
 
 }  // namespace
 
+std::uint64_t FilePlan::probeFrameBytes() const {
+    std::uint64_t bytes = 0;
+    for (const StoredProbe& probe : probes) bytes += probe.storedBytes();
+    return bytes;
+}
+
+std::vector<std::byte> FilePlan::gapBeforeFaces(std::span<const std::byte> head) const {
+    return std::vector<std::byte>(faces == nullptr ? 0
+                                                   : container::gapBefore(head.size() + probeFrameBytes()));
+}
+
+Result<void> checkHasContent(const ProbeFieldInfo& info, bool hasFaces) {
+    if (info.range.size() != 0 || hasFaces) return {};
+    return fail(ErrorCode::BadValue, fmt::format("probes {}:{} of a grid of {}, and no light on faces",
+                                                 info.range.first, info.range.end, info.grid.probeCount()));
+}
+
 Result<std::vector<std::byte>> composeHead(FilePlan& plan) {
     std::vector<probe_layout::Record> records;
     std::vector<ContentKey> inputs;
     std::vector<probe_layout::Frame> frames;
-    std::uint64_t dataBytes = 0;
     for (StoredProbe& probe : plan.probes) {
         probe.record.hash = hashOf(probe.record, probe.frames);
         records.push_back(toRecord(probe.record));
@@ -29,7 +48,6 @@ Result<std::vector<std::byte>> composeHead(FilePlan& plan) {
             if (plan.info.resolution.has(layer))
                 frames.push_back(probe.frames[static_cast<std::size_t>(layer)]);
         }
-        dataBytes += probe.storedBytes();
     }
     std::vector<SectionContent> sections;
     sections.push_back({.fourcc = "INFO", .count = 1, .raw = infoBytes(plan.info)});
@@ -49,12 +67,31 @@ Result<std::vector<std::byte>> composeHead(FilePlan& plan) {
                             .count = plan.proximity->cellCount(),
                             .raw = proximityBytes(plan.info, *plan.proximity)});
     }
-    sections.push_back(
-        {.fourcc = "DATA", .count = plan.probes.size(), .compress = false, .announcedBytes = dataBytes});
-    return container::writeSections(std::move(sections), {.format = container::kPfProbe,
-                                                          .versionMinor = kPfProbeVersionMinor,
-                                                          .contentKey = plan.contentKey,
-                                                          .zstdLevel = kTableZstdLevel});
+    // Readers of 1.1 may skip light on faces.
+    if (plan.faces != nullptr)
+        sections.push_back({.fourcc = "FACE",
+                            .mustUnderstand = false,
+                            .count = plan.chunks.size(),
+                            .raw = faceSectionBytes(*plan.faces, plan.chunks)});
+    sections.push_back({.fourcc = "DATA",
+                        .count = plan.probes.size(),
+                        .compress = false,
+                        .announcedBytes = plan.probeFrameBytes()});
+    if (plan.faces != nullptr) {
+        std::uint64_t bytes = 0;
+        for (const faces::StoredChunk& chunk : plan.chunks) bytes += chunk.record.storedBytes;
+        sections.push_back({.fourcc = "FDAT",
+                            .mustUnderstand = false,
+                            .count = plan.chunks.size(),
+                            .compress = false,
+                            .announcedBytes = bytes});
+    }
+    return container::writeSections(
+        std::move(sections),
+        {.format = container::kPfProbe,
+         .versionMinor = plan.faces == nullptr ? kPfProbeVersionMinor : kPfProbeFacesMinor,
+         .contentKey = plan.contentKey,
+         .zstdLevel = kTableZstdLevel});
 }
 
 Result<PackedProbe> packProbe(const ProbeData& data, int zstdLevel) {

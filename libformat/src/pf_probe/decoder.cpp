@@ -72,6 +72,11 @@ class Validation {
         for (std::uint32_t probe = range.first;
              probe < range.end && findings_.size() < container::kMaxFindings; ++probe)
             checkProbe(probe);
+        const FaceChunkRange chunks = reader_.faces() ? reader_.faces()->range : FaceChunkRange{};
+        for (std::uint32_t chunk = chunks.first;
+             chunk < chunks.end && findings_.size() < container::kMaxFindings; ++chunk)
+            if (auto light = reader_.readFaceChunk(chunk); !light)
+                findings_.push_back(findingOf(std::move(light).error()));
         return std::move(findings_);
     }
 

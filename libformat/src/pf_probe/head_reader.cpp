@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "container/section_table.hpp"
+#include "pf_probe/composer.hpp"
 #include "pf_probe/probe_settings.hpp"
 
 namespace pfvox::probe {
@@ -22,8 +23,8 @@ using probe_layout::Record;
 /// More than later versions will have.
 constexpr std::uint64_t kMaxSettings = 1024;
 
-constexpr std::array<std::string_view, 8> kSections{"INFO", "ORIG", "BAKE", "PROB",
-                                                    "INPT", "FRAM", "PROX", "DATA"};
+constexpr std::array<std::string_view, 10> kSections{"INFO", "ORIG", "BAKE", "PROB", "INPT",
+                                                     "FRAM", "PROX", "FACE", "DATA", "FDAT"};
 
 /// Reads the sections one after the other, each checked against those before.
 class HeadReading {
@@ -46,6 +47,7 @@ class HeadReading {
         PFVOX_CHECK(readFrames());
         PFVOX_CHECK(placeFrames());
         PFVOX_CHECK(readProximitySection());
+        PFVOX_CHECK(readFaces());
         return std::move(head_);
     }
 
@@ -59,6 +61,8 @@ class HeadReading {
     Result<void> readFrames();
     Result<void> placeFrames();
     Result<void> readProximitySection();
+    Result<void> readFaces();
+    Result<void> checkFrameData(const Section& data, std::uint64_t end, std::uint64_t count) const;
     tl::unexpected<Error> failInProbe(const Section& section, std::size_t i, const Error& error) const {
         return failInSection(section, error.code,
                              fmt::format("probe {}: {}", head_.info.range.first + i, error.message));
@@ -86,6 +90,7 @@ Result<void> HeadReading::readInfoSection() {
     auto info = readInfo(raw);
     if (!info) return failInSection(section, info.error().code, std::move(info.error().message));
     head_.info = *std::move(info);
+    PFVOX_CHECK(inSection(section, checkHasContent(head_.info, table_.find("FACE") != nullptr)));
     // Of one probe that is read, whoever gets it.
     return inSection(section, budget_.take(head_.info.resolution.bytesPerProbe()));
 }
@@ -156,11 +161,16 @@ Result<void> HeadReading::placeFrames() {
         if (offset > end)
             return failInSection(data, ErrorCode::BadStructure, "is shorter than the frames in it");
     }
-    if (offset != end) return failInSection(data, ErrorCode::BadStructure, "is longer than the frames in it");
+    return checkFrameData(data, offset, head_.probes.size());
+}
+
+/// Whether a section is that of `count` things whose frames end at `end`.
+Result<void> HeadReading::checkFrameData(const Section& data, std::uint64_t end, std::uint64_t count) const {
+    if (end != data.offset + data.storedBytes)
+        return failInSection(data, ErrorCode::BadStructure, "is longer than the frames in it");
     if (data.codec != layout::Codec::Raw || data.rawBytes != data.storedBytes || data.rawHash != 0 ||
-        data.count != head_.probes.size()) {
+        data.count != count)
         return failInSection(data, ErrorCode::BadStructure, "the entry is not that of raw frames");
-    }
     return {};
 }
 
@@ -177,11 +187,40 @@ Result<void> HeadReading::readProximitySection() {
     return {};
 }
 
+Result<void> HeadReading::readFaces() {
+    const Section* const section = table_.find("FACE");
+    const Section* const data = table_.find("FDAT");
+    if (section == nullptr && data == nullptr) return {};
+    PFVOX_CHECK(table_.require("FACE"));
+    PFVOX_CHECK(table_.require("FDAT"));
+    PFVOX_TRY(const auto, raw, reader_.read<std::byte>(*section, section->rawBytes));
+    auto faces = readFaceSection(raw, budget_);
+    if (!faces) return failInSection(*section, faces.error().code, std::move(faces.error().message));
+    if (section->count != faces->chunks.size())
+        return failInSection(*section, ErrorCode::BadStructure, "holds another number of chunks");
+    std::uint64_t offset = data->offset;
+    for (faces::StoredChunk& chunk : faces->chunks) {
+        chunk.frames.offsetBytes = offset;
+        offset += chunk.record.storedBytes;
+        if (offset > data->offset + data->storedBytes)
+            return failInSection(*data, ErrorCode::BadStructure, "is shorter than the frames in it");
+    }
+    PFVOX_CHECK(checkFrameData(*data, offset, faces->chunks.size()));
+    head_.faces = std::move(faces->info);
+    head_.facePlaces = std::move(faces->places);
+    head_.faceChunks = std::move(faces->chunks);
+    return {};
+}
+
 }  // namespace
 
 Result<FileHead> readHead(const container::ByteSource& source, container::MemoryBudget& budget,
                           Diagnostics& diagnostics) {
     return HeadReading(source, budget).run(diagnostics);
+}
+
+std::string chunkName(std::uint32_t chunk) {
+    return fmt::format("chunk {} of light on faces", chunk);
 }
 
 std::string frameName(std::uint32_t probe, ProbeLayer layer) {

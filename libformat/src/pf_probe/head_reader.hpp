@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "container/section_reader.hpp"
+#include "pf_probe/face_section.hpp"
 #include "pf_probe/records.hpp"
 
 namespace pfvox::probe {
@@ -16,6 +17,9 @@ struct FileHead {
     std::vector<StoredProbe> probes;          ///< probe info.range.first and those behind it
     std::vector<std::uint64_t> frameOffsets;  ///< of each probe's first frame, in the file
     std::optional<ProximityGrid> proximity;
+    std::optional<FaceLightInfo> faces;
+    std::vector<FaceChunkPlace> facePlaces;      ///< of all chunks of the scene
+    std::vector<faces::StoredChunk> faceChunks;  ///< of faces->range
 };
 
 /// Errors: BadMagic, Truncated, UnsupportedVersion, UnsupportedFeature, ChecksumMismatch, BadStructure,
@@ -25,5 +29,7 @@ Result<FileHead> readHead(const container::ByteSource& source, container::Memory
 
 /// "light of probe 12", for messages.
 std::string frameName(std::uint32_t probe, ProbeLayer layer);
+/// "chunk 3 of light on faces".
+std::string chunkName(std::uint32_t chunk);
 
 }  // namespace pfvox::probe

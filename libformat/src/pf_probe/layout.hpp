@@ -1,4 +1,4 @@
-// Layout of a PF_PROBE 1.1 file, byte for byte. docs/format-pf_probe.md says the same in words; change both
+// Layout of a PF_PROBE 1.2 file, byte for byte. docs/format-pf_probe.md says the same in words; change both
 // or none. Header and section table are those of container/layout.hpp.
 #pragma once
 
@@ -93,6 +93,36 @@ struct Proximity {
 };
 static_assert(sizeof(Proximity) == 40);
 
+/// FACE: this, then settings (Setting), instances (FaceInstance), for each region of each instance a u32
+/// number of faces, and the chunks (FaceChunk) of the range. Since 1.2.
+struct Faces {
+    std::uint32_t facesPerChunk;
+    std::uint32_t rangeFirst;
+    std::uint32_t rangeEnd;
+    std::uint32_t settingCount;
+    std::uint32_t instanceCount;
+    std::uint32_t regionCount;  ///< of all instances
+};
+static_assert(sizeof(Faces) == 24);
+
+struct FaceInstance {
+    std::array<std::uint8_t, 16> index;
+    std::uint32_t regionCount;
+};
+static_assert(sizeof(FaceInstance) == 20);
+
+/// The frames of chunks lie in FDAT, one behind the other.
+struct FaceChunk {
+    std::uint64_t hash;
+    std::array<std::uint8_t, 16> inputHash;
+    float noise;  ///< kUnknownError = unknown
+    float cappedFraction;
+    std::uint32_t valueCount;
+    std::uint32_t levelBytes;                  ///< of the runs of levels, before compression
+    std::array<std::uint32_t, 6> storedBytes;  ///< of the runs, then of each plane; 0 = there is none
+};
+static_assert(sizeof(FaceChunk) == 64 && offsetof(FaceChunk, storedBytes) == 40);
+
 /// The journal begins with this; a journal is good for a bake that would begin with the same bytes.
 struct JournalHeader {
     std::array<std::uint8_t, 8> magic;
@@ -111,9 +141,10 @@ struct JournalHeader {
     float depthScale;
     float depthFarMetres;
     std::uint32_t lightContent;
+    std::uint64_t facesHash;   ///< xxh3-64 of FACE as it is before the first chunk; 0 = no light on faces
     std::uint64_t headerHash;  ///< xxh3-64 of all before
 };
-static_assert(sizeof(JournalHeader) == 96 && offsetof(JournalHeader, headerHash) == 88);
+static_assert(sizeof(JournalHeader) == 104 && offsetof(JournalHeader, headerHash) == 96);
 
 /// Before the frames of each finished probe.
 struct JournalRecord {
@@ -126,5 +157,15 @@ struct JournalRecord {
     std::uint64_t recordHash;                    ///< xxh3-64 of all before in this struct
 };
 static_assert(sizeof(JournalRecord) == 152 && offsetof(JournalRecord, recordHash) == 144);
+
+/// Before the frames of each finished chunk of faces.
+struct JournalFaceRecord {
+    std::array<char, 4> fourcc;  ///< "FACE"
+    std::uint32_t chunk;
+    FaceChunk record;
+    std::uint64_t payloadHash;  ///< as in JournalRecord
+    std::uint64_t recordHash;
+};
+static_assert(sizeof(JournalFaceRecord) == 88 && offsetof(JournalFaceRecord, recordHash) == 80);
 
 }  // namespace pfvox::probe_layout

@@ -158,17 +158,18 @@ Result<void> checkProbeInfo(const ProbeFieldInfo& info) {
     const ProbeGrid& grid = info.grid;
     if (!isFinite(grid.start) || !isPositive(grid.step))
         return bad("the grid needs finite positions and steps above 0");
-    if (grid.counts.x == 0 || grid.counts.y == 0 || grid.counts.z == 0)
+    const bool hasProbes = grid.counts != glm::uvec3(0u);
+    if (hasProbes && (grid.counts.x == 0 || grid.counts.y == 0 || grid.counts.z == 0))
         return bad("the grid has no probes along an axis");
     // Step by step: the product of three counts can pass 2^64.
     if (std::uint64_t{grid.counts.x} * grid.counts.y >= kNoProbe || grid.probeCount() >= kNoProbe)
         return bad("more probes than 32 bits can count");
-    if (info.range.first >= info.range.end || info.range.end > grid.probeCount()) {
+    if (info.range.first > info.range.end || info.range.end > grid.probeCount()) {
         return bad(
             fmt::format("probes {}:{} of a grid of {}", info.range.first, info.range.end, grid.probeCount()));
     }
     const ProbeResolution& r = info.resolution;
-    if (r.bytesPerProbe() == 0) return bad("a probe has no layers");
+    if (hasProbes && r.bytesPerProbe() == 0) return bad("a probe has no layers");
     if (std::max({r.depth, r.light, r.irradiance, r.moments}) > kMaxProbeResolution)
         return bad(fmt::format("a map has more than {} texels along an edge", kMaxProbeResolution));
     if (r.depth % shared::kMinDepthBlock != 0)

@@ -14,6 +14,29 @@
 
 namespace pfvox {
 
+namespace {
+
+/// What is read in parallel, and the first of those that cannot be read.
+struct FirstFault {
+    std::mutex mutex{};
+    std::size_t index = ~std::size_t{0};
+    std::optional<Error> error{};
+
+    template <class T>
+    void store(std::size_t i, T& into, Result<T> read) {
+        if (read) {
+            into = *std::move(read);
+            return;
+        }
+        const std::scoped_lock lock(mutex);
+        if (i > index) return;
+        index = i;
+        error = std::move(read).error();
+    }
+};
+
+}  // namespace
+
 struct ProbeFileReader::State {
     std::unique_ptr<container::ByteSource> source;
     mutable container::MemoryBudget budget;
@@ -75,7 +98,35 @@ struct ProbeFileReader::State {
         return data;
     }
 
+    /// Names file and place in an error.
+    template <class T>
+    Result<T> placedInFaces(Result<T> result, std::uint32_t chunk) const {
+        if (!result) {
+            result.error().file = file;
+            result.error().context = probe::chunkName(chunk);
+            result.error().offsetBytes = chunkAt(chunk).frames.offsetBytes;
+        }
+        return result;
+    }
+
+    const faces::StoredChunk& chunkAt(std::uint32_t chunk) const {
+        PFVOX_ASSERT(head.faces && head.faces->range.contains(chunk));
+        return head.faceChunks[chunk - head.faces->range.first];
+    }
+
+    Result<FaceChunk> readFaceChunk(std::uint32_t index, container::MemoryBudget& scratch) const {
+        const faces::StoredChunk& chunk = chunkAt(index);
+        const auto read = [&]() -> Result<FaceChunk> {
+            PFVOX_TRY(auto, stored, container::Array<std::byte>::make(scratch, chunk.record.storedBytes));
+            PFVOX_CHECK(source->readAt(chunk.frames.offsetBytes, std::span(stored)));
+            return faces::unpackChunk(head.faces->settings.codec, head.facePlaces[index].faceCount, chunk,
+                                      std::span(stored), scratch);
+        };
+        return placedInFaces(read(), index);
+    }
+
     Result<ProbeField> readField() const;
+    Result<FaceLight> readFaces() const;
 
     static Result<std::unique_ptr<State>> make(std::unique_ptr<container::ByteSource> source,
                                                const Limits& limits, Diagnostics& diagnostics) {
@@ -103,22 +154,41 @@ Result<ProbeField> ProbeFileReader::State::readField() const {
     ProbeField field{.info = head.info, .probes = {}, .proximity = head.proximity};
     field.probes.resize(range.size());
     container::MemoryBudget scratch(~std::uint64_t{0});
-    std::mutex mutex;
-    std::optional<Error> fault;
-    std::size_t faulty = range.size();  // the first of those that cannot be read
+    FirstFault fault;
     tbb::parallel_for(std::size_t{0}, field.probes.size(), [&](std::size_t i) {
-        auto probe = readProbe(range.first + static_cast<std::uint32_t>(i), scratch);
-        if (probe) {
-            field.probes[i] = *std::move(probe);
-            return;
-        }
-        const std::scoped_lock lock(mutex);
-        if (i > faulty) return;
-        faulty = i;
-        fault = std::move(probe).error();
+        fault.store(i, field.probes[i], readProbe(range.first + static_cast<std::uint32_t>(i), scratch));
     });
-    if (fault) return tl::make_unexpected(*std::move(fault));
+    if (fault.error) return tl::make_unexpected(*std::move(fault.error));
+    if (head.faces) {
+        PFVOX_TRY(auto, light, readFaces());
+        field.faces = std::move(light);
+    }
     return field;
+}
+
+/// As readField().
+Result<FaceLight> ProbeFileReader::State::readFaces() const {
+    const FaceChunkRange range = head.faces->range;
+    std::uint64_t largest = 0;
+    std::uint64_t all = 0;
+    for (std::uint32_t chunk = range.first; chunk < range.end; ++chunk) {
+        const faces::StoredChunk& stored = chunkAt(chunk);
+        largest = std::max(largest, faces::unpackBytes(head.faces->settings.codec, stored));
+        all += faces::chunkBytes(head.facePlaces[chunk].faceCount, stored.record) + sizeof(FaceChunk);
+    }
+    const auto threads = static_cast<std::uint64_t>(tbb::this_task_arena::max_concurrency());
+    const auto busy = std::min<std::uint64_t>(threads, range.size());
+    PFVOX_TRY(const auto, frames, container::Charge::take(budget, busy, largest));
+    PFVOX_TRY(const auto, chunks, container::Charge::take(budget, 1, all));
+    FaceLight light{.info = *head.faces, .chunks = {}};
+    light.chunks.resize(range.size());
+    container::MemoryBudget scratch(~std::uint64_t{0});
+    FirstFault fault;
+    tbb::parallel_for(std::size_t{0}, light.chunks.size(), [&](std::size_t i) {
+        fault.store(i, light.chunks[i], readFaceChunk(range.first + static_cast<std::uint32_t>(i), scratch));
+    });
+    if (fault.error) return tl::make_unexpected(*std::move(fault.error));
+    return light;
 }
 
 ProbeFileReader::ProbeFileReader(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -165,6 +235,27 @@ std::uint64_t ProbeFileReader::fileBytes() const {
 const std::optional<ProximityGrid>& ProbeFileReader::proximity() const {
     return state_->head.proximity;
 }
+const std::optional<FaceLightInfo>& ProbeFileReader::faces() const {
+    return state_->head.faces;
+}
+
+Result<FaceChunk> ProbeFileReader::readFaceChunk(std::uint32_t chunk) const {
+    return guarded([&] { return state_->readFaceChunk(chunk, state_->budget); });
+}
+
+FaceFrames ProbeFileReader::faceFrames(std::uint32_t chunk) const {
+    return state_->chunkAt(chunk).frames;
+}
+
+Result<std::vector<std::byte>> ProbeFileReader::readStoredFaces(std::uint32_t chunk) const {
+    return guarded([&]() -> Result<std::vector<std::byte>> {
+        const faces::StoredChunk& entry = state_->chunkAt(chunk);
+        std::vector<std::byte> stored(entry.record.storedBytes);
+        PFVOX_CHECK(state_->placedInFaces(state_->source->readAt(entry.frames.offsetBytes, stored), chunk));
+        return stored;
+    });
+}
+
 const ProbeRecord& ProbeFileReader::record(std::uint32_t probe) const {
     return state_->probeAt(probe).record;
 }

@@ -15,7 +15,7 @@ namespace pfvox {
 
 struct ProbeFileWriter::State {
     std::filesystem::path output;
-    ProbeFieldInfo info;
+    probe::WritePlan plan;
     ProbeEncodeSettings encode;
     probe::Journal journal;
     io::WriteOptions write;
@@ -23,7 +23,15 @@ struct ProbeFileWriter::State {
     probe::Journal::Entries written{};  ///< what counts
     mutable std::mutex mutex{};         ///< of the end of the journal and of `written`
 
-    probe::Journal::Entries::size_type slotOf(std::uint32_t index) const { return index - info.range.first; }
+    const ProbeFieldInfo& info() const { return plan.info; }
+    std::size_t slotOf(std::uint32_t probe) const { return probe - plan.info.range.first; }
+    std::size_t faceSlotOf(std::uint32_t chunk) const { return chunk - plan.faces->range.first; }
+
+    /// A chunk that counts. Errors: BadReference.
+    Result<probe::Journal::FaceEntry> faceEntry(std::uint32_t chunk) const;
+    static Result<void> checkComplete(std::span<const std::uint32_t> absent, std::uint32_t count,
+                                      std::string_view what);
+    Result<void> writeFile(const std::optional<ProximityGrid>& proximity) const;
 };
 
 std::filesystem::path probeJournalPath(const std::filesystem::path& output) {
@@ -50,38 +58,45 @@ Result<ProbeFileWriter> ProbeFileWriter::open(const std::filesystem::path& outpu
                                               const ProbeWriteSettings& settings, Diagnostics& diagnostics) {
     return guarded([&]() -> Result<ProbeFileWriter> {
         PFVOX_CHECK(checkProbeInfo(info));
+        PFVOX_CHECK(probe::checkHasContent(info, settings.faces.has_value()));
+        probe::WritePlan plan{.info = info, .faces = settings.faces, .places = {}};
+        if (plan.faces) {
+            plan.faces->chunks.clear();
+            PFVOX_CHECK(checkFaceLightInfo(*plan.faces));
+            plan.places = faceChunkPlaces(*plan.faces);
+        }
         const io::WriteOptions write{.replaceReadOnly = settings.replaceReadOnly};
         PFVOX_CHECK(io::checkReplaceable(output, write));
         probe::Journal::Entries found;
         PFVOX_TRY(auto, journal,
-                  probe::Journal::open(probeJournalPath(output), info, settings.resume, found, diagnostics));
+                  probe::Journal::open(probeJournalPath(output), plan, settings.resume, found, diagnostics));
         auto state = std::unique_ptr<State>(new State{.output = output,
-                                                      .info = info,
+                                                      .plan = std::move(plan),
                                                       .encode = settings.encode,
                                                       .journal = std::move(journal),
                                                       .write = write,
                                                       .found = std::move(found)});
-        state->written.resize(info.range.size());
+        state->written = probe::Journal::Entries(state->plan);
         return ProbeFileWriter(std::move(state));
     });
 }
 
 bool ProbeFileWriter::reuse(std::uint32_t probe, const ContentKey& inputHash) {
-    if (!state_->info.range.contains(probe) || inputHash == ContentKey{}) return false;
+    if (!state_->info().range.contains(probe) || inputHash == ContentKey{}) return false;
     const std::scoped_lock lock(state_->mutex);
-    const auto& found = state_->found[state_->slotOf(probe)];
+    const auto& found = state_->found.probes[state_->slotOf(probe)];
     if (!found || found->probe.inputHash != inputHash) return false;
-    state_->written[state_->slotOf(probe)] = found;
+    state_->written.probes[state_->slotOf(probe)] = found;
     return true;
 }
 
 Result<void> ProbeFileWriter::append(std::uint32_t probe, const ProbeData& data) {
     return guarded([&]() -> Result<void> {
-        PFVOX_CHECK(checkProbeData(state_->info, probe, data));
+        PFVOX_CHECK(checkProbeData(state_->info(), probe, data));
         PFVOX_TRY(const probe::PackedProbe, packed, probe::packProbe(data, state_->encode.zstdLevel));
         const std::scoped_lock lock(state_->mutex);
         PFVOX_TRY(auto, entry, state_->journal.append(probe, packed));
-        state_->written[state_->slotOf(probe)] = std::move(entry);
+        state_->written.probes[state_->slotOf(probe)] = std::move(entry);
         return {};
     });
 }
@@ -89,17 +104,17 @@ Result<void> ProbeFileWriter::append(std::uint32_t probe, const ProbeData& data)
 std::vector<std::uint32_t> ProbeFileWriter::missing() const {
     const std::scoped_lock lock(state_->mutex);
     std::vector<std::uint32_t> probes;
-    for (std::uint32_t i = 0; i < state_->info.range.size(); ++i)
-        if (!state_->written[i]) probes.push_back(state_->info.range.first + i);
+    for (std::uint32_t i = 0; i < state_->info().range.size(); ++i)
+        if (!state_->written.probes[i]) probes.push_back(state_->info().range.first + i);
     return probes;
 }
 
 Result<ProbeData> ProbeFileWriter::readProbe(std::uint32_t probe) const {
     return guarded([&]() -> Result<ProbeData> {
         std::optional<probe::Journal::Entry> entry;
-        if (state_->info.range.contains(probe)) {
+        if (state_->info().range.contains(probe)) {
             const std::scoped_lock lock(state_->mutex);
-            entry = state_->written[state_->slotOf(probe)];
+            entry = state_->written.probes[state_->slotOf(probe)];
         }
         if (!entry) return fail(ErrorCode::BadReference, fmt::format("probe {} was not written yet", probe));
         PFVOX_TRY(const auto, stored, state_->journal.readStored(*entry));
@@ -110,7 +125,7 @@ Result<ProbeData> ProbeFileWriter::readProbe(std::uint32_t probe) const {
         for (const ProbeLayer layer : probe::kAllLayers) {
             const probe_layout::Frame& frame = entry->probe.frames[static_cast<std::size_t>(layer)];
             if (frame.storedBytes == 0) continue;
-            const auto words = data.resizeLayer(layer, state_->info.resolution.bytesOf(layer));
+            const auto words = data.resizeLayer(layer, state_->info().resolution.bytesOf(layer));
             const auto bytes = std::span(stored).subspan(next, frame.storedBytes);
             PFVOX_CHECK(probe::unpackFrame(layer, frame, bytes, words, unlimited));
             next += frame.storedBytes;
@@ -119,26 +134,103 @@ Result<ProbeData> ProbeFileWriter::readProbe(std::uint32_t probe) const {
     });
 }
 
+bool ProbeFileWriter::reuseFaces(std::uint32_t chunk, const ContentKey& inputHash) {
+    if (!state_->plan.chunkRange().contains(chunk) || inputHash == ContentKey{}) return false;
+    const std::scoped_lock lock(state_->mutex);
+    const auto& found = state_->found.faces[state_->faceSlotOf(chunk)];
+    if (!found || found->chunk.record.inputHash != inputHash) return false;
+    state_->written.faces[state_->faceSlotOf(chunk)] = found;
+    return true;
+}
+
+Result<void> ProbeFileWriter::appendFaces(std::uint32_t chunk, const FaceChunk& light,
+                                          const FaceChunkRecord& record) {
+    return guarded([&]() -> Result<void> {
+        const FaceChunkRange range = state_->plan.chunkRange();
+        if (!range.contains(chunk))
+            return fail(ErrorCode::BadReference,
+                        fmt::format("chunk {} is outside the chunks {}:{}", chunk, range.first, range.end));
+        PFVOX_CHECK(checkFaceChunk(state_->plan.faceCount(chunk), light, record));
+        PFVOX_TRY(
+            const faces::PackedChunk, packed,
+            faces::packChunk(state_->plan.faces->settings.codec, light, record, state_->encode.zstdLevel));
+        const std::scoped_lock lock(state_->mutex);
+        PFVOX_TRY(auto, entry, state_->journal.append(chunk, packed));
+        state_->written.faces[state_->faceSlotOf(chunk)] = std::move(entry);
+        return {};
+    });
+}
+
+std::vector<std::uint32_t> ProbeFileWriter::missingFaces() const {
+    const std::scoped_lock lock(state_->mutex);
+    std::vector<std::uint32_t> chunks;
+    for (std::uint32_t i = 0; i < state_->written.faces.size(); ++i)
+        if (!state_->written.faces[i]) chunks.push_back(state_->plan.faces->range.first + i);
+    return chunks;
+}
+
+Result<probe::Journal::FaceEntry> ProbeFileWriter::State::faceEntry(std::uint32_t chunk) const {
+    if (plan.chunkRange().contains(chunk)) {
+        const std::scoped_lock lock(mutex);
+        if (const auto& entry = written.faces[faceSlotOf(chunk)]) return *entry;
+    }
+    return fail(ErrorCode::BadReference, fmt::format("chunk {} was not written yet", chunk));
+}
+
+Result<FaceChunk> ProbeFileWriter::readFaceChunk(std::uint32_t chunk) const {
+    return guarded([&]() -> Result<FaceChunk> {
+        PFVOX_TRY(const auto, entry, state_->faceEntry(chunk));
+        PFVOX_TRY(const auto, stored, state_->journal.readStored(entry));
+        container::MemoryBudget unlimited(~std::uint64_t{0});
+        return faces::unpackChunk(state_->plan.faces->settings.codec, state_->plan.faceCount(chunk),
+                                  entry.chunk, stored, unlimited);
+    });
+}
+
+Result<FaceChunkRecord> ProbeFileWriter::faceRecord(std::uint32_t chunk) const {
+    return guarded([&]() -> Result<FaceChunkRecord> {
+        PFVOX_TRY(const auto, entry, state_->faceEntry(chunk));
+        return entry.chunk.record;
+    });
+}
+
+Result<void> ProbeFileWriter::State::checkComplete(std::span<const std::uint32_t> absent, std::uint32_t count,
+                                                   std::string_view what) {
+    if (absent.empty()) return {};
+    return fail(ErrorCode::BadStructure, fmt::format("{} of {} {} are missing: {}", absent.size(), count,
+                                                     what, probe::listProbes(probe::rangesOf(absent))));
+}
+
+Result<void> ProbeFileWriter::State::writeFile(const std::optional<ProximityGrid>& proximity) const {
+    probe::FilePlan file{.info = plan.info,
+                         .contentKey = encode.contentKey,
+                         .probes = {},
+                         .proximity = proximity ? &*proximity : nullptr,
+                         .faces = plan.faces ? &*plan.faces : nullptr,
+                         .chunks = {}};
+    for (const auto& entry : written.probes) file.probes.push_back(entry->probe);
+    for (const auto& entry : written.faces) file.chunks.push_back(entry->chunk);
+    PFVOX_TRY(const auto, head, probe::composeHead(file));
+    PFVOX_TRY(io::AtomicFile, out, io::AtomicFile::create(output, write));
+    PFVOX_CHECK(out.write(head));
+    for (const auto& entry : written.probes) {
+        PFVOX_TRY(const auto, stored, journal.readStored(*entry));
+        PFVOX_CHECK(out.write(stored));
+    }
+    PFVOX_CHECK(out.write(file.gapBeforeFaces(head)));
+    for (const auto& entry : written.faces) {
+        PFVOX_TRY(const auto, stored, journal.readStored(*entry));
+        PFVOX_CHECK(out.write(stored));
+    }
+    return out.commit();
+}
+
 Result<void> ProbeFileWriter::finish(const std::optional<ProximityGrid>& proximity) {
     return guarded([&]() -> Result<void> {
-        if (const auto absent = missing(); !absent.empty()) {
-            return fail(ErrorCode::BadStructure,
-                        fmt::format("{} of {} probes are missing: {}", absent.size(),
-                                    state_->info.range.size(), probe::listProbes(probe::rangesOf(absent))));
-        }
-        probe::FilePlan plan{.info = state_->info,
-                             .contentKey = state_->encode.contentKey,
-                             .probes = {},
-                             .proximity = proximity ? &*proximity : nullptr};
-        for (const auto& entry : state_->written) plan.probes.push_back(entry->probe);
-        PFVOX_TRY(const auto, head, probe::composeHead(plan));
-        PFVOX_TRY(io::AtomicFile, file, io::AtomicFile::create(state_->output, state_->write));
-        PFVOX_CHECK(file.write(head));
-        for (const auto& entry : state_->written) {
-            PFVOX_TRY(const auto, stored, state_->journal.readStored(*entry));
-            PFVOX_CHECK(file.write(stored));
-        }
-        PFVOX_CHECK(file.commit());
+        PFVOX_CHECK(state_->checkComplete(missing(), state_->info().range.size(), "probes"));
+        PFVOX_CHECK(state_->checkComplete(missingFaces(), state_->plan.chunkRange().size(),
+                                          "chunks of light on faces"));
+        PFVOX_CHECK(state_->writeFile(proximity));
         return state_->journal.remove();
     });
 }
