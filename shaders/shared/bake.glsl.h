@@ -186,8 +186,7 @@ PFVOX_STRUCT(WavePush) {
     uint count;
     uint set;     // of the queues: read from here, and written to the other one
     uint reserved0;
-    uint reserved1;
-    uint reserved2;
+    uvec2 faces;  // FaceField, where light is taken from faces
 };
 PFVOX_SIZE(WavePush, 32);
 

@@ -20,7 +20,8 @@ struct LitFaces {
         glm::dvec3 sum(0.0);
         const std::uint64_t first = faces.firstValue[face];
         const std::uint64_t end = faces.firstValue[face + 1];
-        for (std::uint64_t i = first; i < end; ++i) sum += glm::dvec3(shared::unpackRgb9e5(faces.light.values[i]));
+        for (std::uint64_t i = first; i < end; ++i)
+            sum += glm::dvec3(shared::unpackRgb9e5(faces.light.values[i]));
         return (sum.x + sum.y + sum.z) / (3.0 * static_cast<double>(end - first));
     }
     bool hasValue(std::size_t face) const { return faces.light.levels[face] != kNoFaceValue; }
@@ -30,7 +31,7 @@ class FaceLightTest : public BakeTest {
   protected:
     static BakeSettings plain(std::uint32_t rays) {
         BakeSettings settings;
-        settings.faces = {
+        settings.faces = FaceSettings{
             .baseRays = 256, .minRays = rays, .maxRays = rays, .noiseTarget = 0.005f, .divide = false};
         return settings;
     }

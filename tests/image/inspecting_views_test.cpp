@@ -114,8 +114,10 @@ class AtlasViews : public InspectingViews {
         auto read = loadScene(folder / "hall.toml", Limits{}, diagnostics);
         ASSERT_TRUE(read) << describe(read.error());
         loaded.emplace(*std::move(read));
-        auto opened = openProbes(device(), litHallProbes(device(), *loaded), *loaded, folder / "hall.toml",
-                                 diagnostics);
+        const auto scene = gpu::Scene::build(device(), gpu::partsOf(*loaded), diagnostics);
+        ASSERT_TRUE(scene) << describe(scene.error());
+        auto opened = openProbes(device(), litHallProbes(device(), *loaded), *loaded, *scene,
+                                 folder / "hall.toml", diagnostics);
         ASSERT_TRUE(opened) << describe(opened.error());
         probes.emplace(*std::move(opened));
     }

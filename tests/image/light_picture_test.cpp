@@ -24,8 +24,8 @@ class LightPicture : public PictureTest {
         auto made = gpu::Scene::build(device(), gpu::partsOf(*loaded), diagnostics);
         ASSERT_TRUE(made) << describe(made.error());
         scene.emplace(*std::move(made));
-        auto opened = openProbes(device(), litHallProbes(device(), *loaded), *loaded, folder / "hall.toml",
-                                 diagnostics);
+        auto opened = openProbes(device(), litHallProbes(device(), *loaded), *loaded, *scene,
+                                 folder / "hall.toml", diagnostics);
         ASSERT_TRUE(opened) << describe(opened.error());
         probes.emplace(*std::move(opened));
         settings.lighting = lightingOf(loaded->scene);
@@ -181,7 +181,7 @@ TEST_F(LightPicture, NoSurfaceOfAnySceneIsWithoutIndirectLight) {
         ASSERT_TRUE(baked) << describe(baked.error());
         PFVOX_ASSERT_VALUE(const gpu::Scene, built,
                            gpu::Scene::build(device(), gpu::partsOf(alone), diagnostics));
-        PFVOX_ASSERT_VALUE(const ShownProbes, shown, openProbes(device(), field, alone, file, diagnostics));
+        PFVOX_ASSERT_VALUE(const ShownProbes, shown, openProbes(device(), field, alone, built, file, diagnostics));
         PictureSettings small{
             .width = 128, .height = 96, .samplesPerPixel = 1, .mode = ViewMode::Tiers, .lighting = {}};
         PictureStatistics statistics;

@@ -24,15 +24,16 @@ namespace fs = std::filesystem;
 namespace {
 
 HelpText helpText() {
-    return {
-        .summary =
-            "Bakes the indirect light of a scene into a grid of light-field probes. What is up to date by "
-            "its content is left alone.",
-        .usage = {"probe-bake [bake] [options] <scene.toml | file.pf_vox> -o <file.pf_probe>"},
-        .examples = {{"probe-bake scene.toml -o scene.pf_probe", "the whole grid of the scene"},
-                     {"probe-bake scene.toml -o scene.pf_probe --resume", "go on after Ctrl-C"},
-                     {"probe-bake scene.toml -o a.pf_probe --probes 0:500", "a part, for `probe-bake merge`"},
-                     {"probe-bake hall.pf_vox -o hall.pf_probe --profile compact", "one model, small maps"}}};
+    return {.summary =
+                "Bakes the indirect light of a scene: light on the faces of its voxels and a grid of probes "
+                "for what "
+                "moves, or light-field probes alone. What is up to date by its content is left alone.",
+            .usage = {"probe-bake [bake] [options] <scene.toml | file.pf_vox> -o <file.pf_probe>"},
+            .examples = {{"probe-bake scene.toml -o scene.pf_probe", "the whole scene"},
+                         {"probe-bake scene.toml -o scene.pf_probe --resume", "go on after Ctrl-C"},
+                         {"probe-bake scene.toml -o a.pf_probe --profile probes --probes 0:500",
+                          "a part, for `probe-bake merge`"},
+                         {"probe-bake hall.pf_vox -o hall.pf_probe --profile probes", "light-field probes"}}};
 }
 
 /// Shows how far the bake is, and stops it on Ctrl-C.
@@ -207,7 +208,7 @@ class BakeRun {
             // Better now than after the bake.
             PFVOX_CHECK(depfileText({inputs}, depfileReader(options_.ifChanged)));
         }
-        const auto settings = settingsOf(options_, scene.probes.probeCount());
+        auto settings = settingsOf(options_, scene.probes.probeCount());
         if (!settings) {
             usage_ = settings.error();
             return {};
@@ -220,6 +221,7 @@ class BakeRun {
             gpu::Device, device,
             gpu::Device::open({.selector = options_.device, .memoryBytes = options_.deviceMemoryMiB << 20}));
         outcome_.device = device.info().name;
+        adaptTo(device.info(), options_, *settings);
         const ContentKey key = bakeContentKey(scene, *settings, device.info());
         const ProbeRange range =
             settings->range.value_or(ProbeRange{0, static_cast<std::uint32_t>(scene.probes.probeCount())});

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <vector>
@@ -16,6 +17,7 @@ constexpr double kMaxSampleCount = 65536;
 constexpr std::uint64_t kMaxBounceCount = 16;
 constexpr const char* kUnlimited = "unlimited";
 constexpr std::uint32_t kSampleBatch = 16;
+constexpr std::uint32_t kFaceRayBatch = 128;
 constexpr const char* kBaking = "Baking";
 
 std::optional<std::uint64_t> parseCount(std::string_view text) {
@@ -75,34 +77,42 @@ void addBounces(CLI::App& command, std::optional<std::uint32_t>& bounces) {
 
 void addLightOptions(CLI::App& command, BakeOptions& options) {
     auto* profile =
-        command.add_option("--profile", options.profile, "maps of a probe: thesis, default or compact")
+        command
+            .add_option(
+                "--profile", options.profile,
+                "faces: light on faces and small probes; probes, thesis, compact: light-field probes alone, "
+                "with more maps or fewer")
             ->option_text("NAME")
-            ->check(CLI::IsMember({"thesis", "default", "compact"}))
+            ->check(CLI::IsMember({"faces", "probes", "thesis", "compact"}))
             ->check(showDefault(options.profile))
             ->group(kBaking);
     command
         .add_option("--resolution", options.resolution,
-                    "own resolution of the maps instead: depth,light,irradiance,moments in texels, 0 = none")
+                    "probes alone, of this resolution: depth,light,irradiance,moments in texels, 0 = none")
         ->option_text("D,L,I,M")
         ->excludes(profile)
         ->group(kBaking);
     auto* samples = command
                         .add_option("--samples", options.samples,
-                                    "as many paths for every texel, a multiple of 16 up to 65536")
+                                    "as many paths for every texel, or rays for every face, a multiple of 16 "
+                                    "(of faces: 128) up to "
+                                    "65536")
                         ->option_text("N")
                         ->check(numberFrom(kSampleBatch, kMaxSampleCount))
                         ->group(kBaking);
     command
         .add_option("--noise", options.noise,
-                    "relative standard error at which a tile of texels is done, 0.0001 to 1")
+                    "relative standard error at which faces or a tile of texels are done, 0.0001 to 1")
         ->option_text("FRACTION")
-        ->check(showDefault(BakeSettings{}.noiseTarget))
+        ->check(showDefault("of faces 0.005, without a GPU 0.03; of probes 0.02"))
         ->excludes(samples)
         ->check(numberFrom(1e-4, 1))
         ->group(kBaking);
-    command.add_option("--max-samples", options.maxSamples, "paths a texel at most, 32 to 65536")
+    command
+        .add_option("--max-samples", options.maxSamples,
+                    "paths a texel, or rays a face, at most, 32 to 65536")
         ->option_text("N")
-        ->check(showDefault(options.maxSamples))
+        ->check(showDefault("of faces 16384, without a GPU 512; of probes 4096"))
         ->excludes(samples)
         ->check(numberFrom(32, kMaxSampleCount))
         ->group(kBaking);
@@ -240,20 +250,24 @@ tl::expected<BakeSettings, std::string> settingsOf(const BakeOptions& options, s
         if (!resolution) return tl::make_unexpected(resolution.error());
         settings.resolution = *resolution;
     } else {
-        settings.resolution = resolutionOf(options.profile == "thesis"    ? ProbeProfile::Thesis
-                                           : options.profile == "compact" ? ProbeProfile::Compact
-                                                                          : ProbeProfile::Default);
+        settings.resolution = resolutionOf(options.profile == "thesis"   ? ProbeProfile::Thesis
+                                           : options.profile == "probes" ? ProbeProfile::Default
+                                                                         : ProbeProfile::Compact);
+        if (options.profile == "faces") settings.faces = FaceSettings{};
     }
     if (!options.probes.empty()) {
         const auto range = parseProbeRange(options.probes, probeCount);
         if (!range) return tl::make_unexpected(range.error());
         settings.range = *range;
     }
-    settings.maxSamples = options.samples.value_or(options.maxSamples);
+    settings.maxSamples = options.samples.value_or(options.maxSamples.value_or(settings.maxSamples));
     settings.minSamples = options.samples.value_or(settings.minSamples);
-    if (settings.maxSamples % kSampleBatch != 0)
-        return tl::make_unexpected(
-            fmt::format("{} samples: must be a multiple of {}", settings.maxSamples, kSampleBatch));
+    const std::uint32_t batch = settings.faces ? kFaceRayBatch : kSampleBatch;
+    for (const std::uint32_t count : {options.samples.value_or(batch), options.maxSamples.value_or(batch)}) {
+        if (count % batch != 0)
+            return tl::make_unexpected(fmt::format("{} samples: must be a multiple of {}", count, batch));
+    }
+    settings.minSamples = std::min(settings.minSamples, settings.maxSamples);
     if (options.samples) settings.noiseTarget = 0.0f;
     if (options.noise) settings.noiseTarget = static_cast<float>(*options.noise);
     settings.maxBounces = options.bounces;
@@ -264,6 +278,21 @@ tl::expected<BakeSettings, std::string> settingsOf(const BakeOptions& options, s
     settings.force = options.force;
     settings.toolName = "probe-bake " PFVOX_VERSION;
     return settings;
+}
+
+void adaptTo(const gpu::DeviceInfo& device, const BakeOptions& options, BakeSettings& settings) {
+    if (!settings.faces) return;
+    FaceSettings& faces = *settings.faces;
+    faces = faceSettingsFor(device);
+    if (options.samples) faces.minRays = faces.maxRays = *options.samples;
+    if (options.maxSamples) {
+        faces.maxRays = *options.maxSamples;
+        // Rounds have four times the rays of the one before, up to the largest number.
+        faces.minRays = faces.maxRays;
+        while (faces.minRays > faceSettingsFor(device).minRays && faces.minRays % (4 * kFaceRayBatch) == 0)
+            faces.minRays /= 4;
+    }
+    if (options.noise) faces.noiseTarget = static_cast<float>(*options.noise);
 }
 
 }  // namespace pfvox::tools

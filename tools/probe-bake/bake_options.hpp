@@ -14,11 +14,11 @@ struct BakeOptions {
     CommonOptions common;
     std::string input;
     std::string output;
-    std::string profile = "default";
+    std::string profile = "faces";
     std::string resolution;
     std::optional<std::uint32_t> samples;
     std::optional<double> noise;
-    std::uint32_t maxSamples = BakeSettings{}.maxSamples;
+    std::optional<std::uint32_t> maxSamples;
     std::optional<std::uint32_t> bounces = BakeSettings{}.maxBounces;
     std::uint64_t seed = BakeSettings{}.seed;
     std::string probes;
@@ -45,6 +45,9 @@ void addDeviceOption(CLI::App& command, std::string& device);
 
 /// Settings of a bake over so many probes. On failure: what is wrong with which option.
 tl::expected<BakeSettings, std::string> settingsOf(const BakeOptions& options, std::uint64_t probeCount);
+
+/// What is not given suits the device.
+void adaptTo(const gpu::DeviceInfo& device, const BakeOptions& options, BakeSettings& settings);
 
 /// "a:b", half open, within [0, probeCount]; or "k/n", part k of n from 0.
 tl::expected<ProbeRange, std::string> parseProbeRange(const std::string& text, std::uint64_t probeCount);

@@ -26,6 +26,36 @@ const char* statusOf(const BakeOutcome& outcome) {
                                                    : "baked";
 }
 
+std::string facesText(const FaceReport& faces) {
+    std::string text =
+        fmt::format("  {}, {} divided, {} in {}", plural(faces.faces, "face"), formatCount(faces.divided),
+                    plural(faces.values, "value"), formatBytes(faces.fileBytes));
+    if (faces.faces != 0)
+        text += fmt::format(" ({:.2f} bytes a face)",
+                            static_cast<double>(faces.fileBytes) / static_cast<double>(faces.faces));
+    if (faces.reused != 0) return text + "; from the journal\n";
+    return text + fmt::format(
+                      "\n  {} rays for faces at {} rays/s, {} sweeps, noise {:.2f} %, {:.2f} % of the faces "
+                      "stopped at the largest number\n",
+                      formatRoughly(static_cast<double>(faces.base.rays + faces.light.rays)),
+                      formatRoughly(raysPerSecond({.rays = faces.base.rays + faces.light.rays,
+                                                   .gpuMs = faces.base.gpuMs + faces.light.gpuMs})),
+                      faces.sweeps, 100.0 * faces.meanNoise, 100.0 * faces.noisyFraction);
+}
+
+Json facesJson(const FaceReport& faces) {
+    return {{"faces", faces.faces},
+            {"reused", faces.reused},
+            {"divided", faces.divided},
+            {"values", faces.values},
+            {"sweeps", faces.sweeps},
+            {"meanNoise", faces.meanNoise},
+            {"noisyFraction", faces.noisyFraction},
+            {"fileBytes", faces.fileBytes},
+            {"base", passJson(faces.base)},
+            {"light", passJson(faces.light)}};
+}
+
 std::string noiseLine(const BakeReport& report) {
     std::string line = "  ";
     if (report.meanSamples) line += fmt::format("{:.1f} paths a texel, ", *report.meanSamples);
@@ -51,6 +81,9 @@ std::string proximityLine(const ProximityReport& proximity) {
 std::string progressLine(const std::string& output, const BakeProgress& progress) {
     std::string line = fmt::format("{}: probe {} of {}", output, formatCount(progress.probesDone),
                                    formatCount(progress.probes));
+    if (progress.stage == BakeStage::Faces)
+        line = fmt::format("{}: light on {}, {} rays", output, plural(progress.faces, "face"),
+                           formatRoughly(static_cast<double>(progress.rays)));
     if (progress.probesReused != 0)
         line += fmt::format(" ({} from the journal)", formatCount(progress.probesReused));
     if (progress.elapsedSeconds > 0.0)
@@ -73,12 +106,14 @@ std::string bakeText(const BakeOutcome& outcome, bool explain) {
     std::string text =
         fmt::format("baked {} -> {}: {}, {} in {}{}\n", input, output, plural(report.probes, "probe"),
                     formatBytes(report.fileBytes), formatDuration(report.totalMs * 1e-3), why);
+    if (report.faces) text += facesText(*report.faces);
     text += fmt::format("  {}; {} from the journal\n", countsText(report.counts), formatCount(report.reused));
     text += fmt::format("  {} rays for geometry at {} rays/s, {} for light at {} rays/s on {}\n",
                         formatRoughly(static_cast<double>(report.geometry.rays)),
                         formatRoughly(raysPerSecond(report.geometry)),
                         formatRoughly(static_cast<double>(report.light.rays)),
                         formatRoughly(raysPerSecond(report.light)), outcome.device);
+    if (report.faces) return text;
     return text + noiseLine(report) + proximityLine(report.proximity);
 }
 
@@ -98,6 +133,7 @@ Json bakeJson(const BakeOutcome& outcome) {
     json["reused"] = known(isBaked, report.reused);
     const Json counts = countsJson(report.counts);
     for (const auto& [name, count] : counts.items()) json[name] = known(isThere, count);
+    json["faces"] = report.faces ? facesJson(*report.faces) : Json(nullptr);
     json["geometry"] = known(isBaked, passJson(report.geometry));
     json["light"] = known(isBaked, passJson(report.light));
     json["smallLayersMs"] = known(isBaked, report.smallLayersMs);

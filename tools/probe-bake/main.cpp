@@ -22,15 +22,16 @@ std::string versionText() {
 HelpText helpText() {
     return {
         .summary =
-            "probe-bake bakes the indirect light of a scene into a grid of light-field probes, and inspects "
-            "such files.",
+            "probe-bake bakes the indirect light of a scene, on faces of voxels and in probes, and inspects "
+            "such "
+            "files.",
         .usage = {"probe-bake [bake] [options] <scene.toml | file.pf_vox> -o <file.pf_probe>",
                   "probe-bake info [options] <file.pf_probe>...",
                   "probe-bake validate [options] <file.pf_probe>...",
                   "probe-bake compare [options] <a.pf_probe> <b.pf_probe>",
                   "probe-bake merge [options] <shard.pf_probe>... -o <file.pf_probe>",
                   "probe-bake verify [options] <scene.toml | file.pf_vox> <file.pf_probe>"},
-        .examples = {{"probe-bake scene.toml -o scene.pf_probe", "bake the scene's grid"},
+        .examples = {{"probe-bake scene.toml -o scene.pf_probe", "bake the scene"},
                      {"probe-bake info hall.pf_probe", "what is in it"}},
         .defaultCommand = "bake",
         .details = {

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <limits>
 #include <memory>
+#include <pfvox/face_file.hpp>
 #include <pfvox/verify.hpp>
 
 #include "common/json.hpp"
@@ -34,6 +35,7 @@ struct VerifyOptions {
     std::string output;
     std::string device;
     bool compact = false;
+    bool probes = false;
     std::optional<double> maxRmsePercent;
     std::optional<double> maxFlip;
 };
@@ -127,12 +129,19 @@ class VerifyRun {
                   ProbeFileReader::open(options_.inputs[1], limits_, diagnostics));
         PFVOX_TRY(gpu::Device, device, gpu::Device::open({.selector = options_.device}));
         PFVOX_TRY(const gpu::Scene, scene,
-                  gpu::Scene::build(device, gpu::partsOf(loaded), diagnostics, {.origin = loaded.origin()}));
+                  gpu::Scene::build(device, gpu::partsOf(loaded), diagnostics,
+                                    {.origin = loaded.origin(), .faces = reader.faces().has_value()}));
         PFVOX_TRY(const gpu::GpuProbes, probes,
                   gpu::GpuProbes::upload(device, reader,
                                          {.voxelMetres = voxelMetresOf(loaded),
                                           .origin = scene.origin(),
                                           .compactOnly = options_.compact}));
+        std::optional<gpu::GpuFaces> faces;
+        if (reader.faces() && !options_.probes && !options_.compact) {
+            PFVOX_TRY(const FaceValues, light, readFaceValues(reader, scene));
+            PFVOX_TRY(gpu::GpuFaces, made, gpu::GpuFaces::upload(device, scene, light));
+            faces = std::move(made);
+        }
         PFVOX_TRY(const ProbeVerifier, verifier, ProbeVerifier::create(device));
         const std::uint32_t bounces = reader.info().settings.maxBounces.value_or(kUnlimitedBounces);
         const VerifySettings settings{.width = size_.x,
@@ -141,7 +150,11 @@ class VerifyRun {
                                       .maxBounces = std::min(bounces, VerifySettings{}.maxBounces)};
         const ReferenceStore store(options_.references, reader.info().sceneHash);
         for (const NamedCamera& named : cameras) {
-            const VerifyInput input{.loaded = loaded, .scene = scene, .camera = named.camera, .probes = &probes};
+            const VerifyInput input{.loaded = loaded,
+                                    .scene = scene,
+                                    .camera = named.camera,
+                                    .probes = &probes,
+                                    .faces = faces ? &*faces : nullptr};
             PFVOX_TRY(const CameraVerdict, verdict, judge({device, verifier, store, input, named}, settings));
             reporter_.clearProgress();
             report(verdict);
@@ -281,6 +294,8 @@ Command makeVerifyCommand(CLI::App& tool) {
                     "folder of references: paths there are not traced again, new ones are added")
         ->option_text("FOLDER")
         ->check(outputPath())
+        ->group(kVerifying);
+    command.add_flag("--probes", options->probes, "judge the probes of a file that has light on faces, too")
         ->group(kVerifying);
     command.add_flag("--compact", options->compact, "look at the small maps only")->group(kVerifying);
     command

@@ -1,5 +1,7 @@
 #include "document.hpp"
 
+#include <pfvox/face_file.hpp>
+
 #include <algorithm>
 #include <pfvox/bake.hpp>
 #include <system_error>
@@ -103,8 +105,9 @@ void Document::takeLoaded() {
 }
 
 Result<void> Document::show(OpenPath path, LoadedScene loaded, bool keepCamera) {
-    PFVOX_TRY(gpu::Scene, scene,
-              gpu::Scene::build(*device_, gpu::partsOf(loaded), *log_, {.origin = loaded.origin()}));
+    PFVOX_TRY(
+        gpu::Scene, scene,
+        gpu::Scene::build(*device_, gpu::partsOf(loaded), *log_, {.origin = loaded.origin(), .faces = true}));
     if (!keepCamera) probes_.reset();
     emitters_.reset();
     std::vector<WorldBounds> boxes = assetBoxesOf(loaded);
@@ -122,7 +125,7 @@ void Document::newScene() {
 
 void Document::showNothing() {
     const LoadedScene nothing;
-    Result<gpu::Scene> scene = gpu::Scene::build(*device_, gpu::partsOf(nothing), *log_);
+    Result<gpu::Scene> scene = gpu::Scene::build(*device_, gpu::partsOf(nothing), *log_, {.faces = true});
     if (!scene) return log_->addError(describe(scene.error()));
     std::error_code ignored;
     composer.beginEmpty(fs::current_path(ignored));
@@ -196,7 +199,10 @@ Result<void> Document::rearrange(LoadedScene loaded) {
     if (!sameModels(loaded, shown_->loaded)) {
         PFVOX_TRY(gpu::Scene, scene,
                   gpu::Scene::build(*device_, gpu::partsOf(loaded), *log_,
-                                    {.known = &shown_->scene, .origin = loaded.origin()}));
+                                    {.known = &shown_->scene, .origin = loaded.origin(), .faces = true}));
+        // Values are listed instance by instance: where there are others, they are nobody's.
+        if (probes_ && probes_->faces && probes_->faceInstances != faceInstancesOf(scene))
+            probes_->faces.reset();
         shown_->scene = std::move(scene);
         emitters_.reset();
         ++revisions_.pixels;
@@ -213,7 +219,7 @@ Result<void> Document::rearrange(LoadedScene loaded) {
 void Document::findProbesOf(const ShownScene& shown) {
     ++revisions_.pixels;
     Result<std::optional<ShownProbes>> found =
-        findProbes(*device_, probeRequest_, shown.loaded, shown.path.file, *log_);
+        findProbes(*device_, probeRequest_, shown.loaded, shown.scene, shown.path.file, *log_);
     if (!found) return log_->addError(describe(found.error()));
     probes_ = *std::move(found);
     log_->add(MessageKind::Note,

@@ -195,9 +195,10 @@ Result<void> runHeadless(const Options& options, Diagnostics& diagnostics) {
     PFVOX_TRY(gpu::Device, device,
               gpu::Device::open({.selector = options.device, .validation = options.validation}));
     PFVOX_TRY(const gpu::Scene, scene,
-              gpu::Scene::build(device, gpu::partsOf(loaded), diagnostics, {.origin = loaded.origin()}));
+              gpu::Scene::build(device, gpu::partsOf(loaded), diagnostics,
+                                {.origin = loaded.origin(), .faces = true}));
     PFVOX_TRY(const std::optional<ShownProbes>, probes,
-              findProbes(device, request, loaded, path.file, diagnostics));
+              findProbes(device, request, loaded, scene, path.file, diagnostics));
     const ShownProbes* const light = probes ? &*probes : nullptr;
     if (light != nullptr) diagnostics.note("probes", "indirect light from " + light->file.string());
     PFVOX_CHECK(checkView(settings.mode, light, path.file));

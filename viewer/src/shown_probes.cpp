@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <pfvox/bake.hpp>
+#include <pfvox/face_file.hpp>
 #include <system_error>
 
 namespace pfvox::viewer {
@@ -77,7 +78,8 @@ float voxelMetresOf(const LoadedScene& scene) {
 }
 
 Result<ShownProbes> openProbes(gpu::Device& device, const fs::path& file, const LoadedScene& scene,
-                               const fs::path& sceneFile, Diagnostics& diagnostics) {
+                               const gpu::Scene& gpuScene, const fs::path& sceneFile,
+                               Diagnostics& diagnostics) {
     const Result<ProbeFileReader> reader = ProbeFileReader::open(file, Limits{}, diagnostics);
     if (!reader) return tl::make_unexpected(withRemedy(reader.error(), file, sceneFile));
     Result<gpu::GpuProbes> field = gpu::GpuProbes::upload(
@@ -88,6 +90,16 @@ Result<ShownProbes> openProbes(gpu::Device& device, const fs::path& file, const 
                       .probes = listOf(*reader),
                       .ofThisScene = reader->info().sceneHash == sceneContentHash(scene),
                       .field = *std::move(field)};
+    if (reader->faces()) {
+        Result<FaceValues> light = readFaceValues(*reader, gpuScene);
+        if (!light && light.error().code != ErrorCode::BadReference)
+            return tl::make_unexpected(withRemedy(light.error(), file, sceneFile));
+        if (light) {
+            PFVOX_TRY(gpu::GpuFaces, faces, gpu::GpuFaces::upload(device, gpuScene, *light));
+            shown.faces = std::move(faces);
+            shown.faceInstances = reader->faces()->instances;
+        }
+    }
     if (!shown.ofThisScene) {
         diagnostics.warn(
             "probes-other-scene",
@@ -104,12 +116,12 @@ std::string guessNote(const fs::path& sceneFile) {
 }
 
 Result<std::optional<ShownProbes>> findProbes(gpu::Device& device, const ProbeRequest& request,
-                                              const LoadedScene& scene, const fs::path& sceneFile,
-                                              Diagnostics& diagnostics) {
+                                              const LoadedScene& scene, const gpu::Scene& gpuScene,
+                                              const fs::path& sceneFile, Diagnostics& diagnostics) {
     if (request.none) return std::optional<ShownProbes>{};
     const fs::path file = request.file.empty() ? probesBeside(sceneFile) : request.file;
     if (request.file.empty() && (file.empty() || !isThere(file))) return std::optional<ShownProbes>{};
-    PFVOX_TRY(ShownProbes, shown, openProbes(device, file, scene, sceneFile, diagnostics));
+    PFVOX_TRY(ShownProbes, shown, openProbes(device, file, scene, gpuScene, sceneFile, diagnostics));
     return std::optional<ShownProbes>(std::move(shown));
 }
 
@@ -135,7 +147,7 @@ Result<void> checkView(ViewMode mode, const ShownProbes* probes, const fs::path&
             .code = ErrorCode::UnsupportedFeature,
             .message =
                 fmt::format("the view '{}' shows depth maps, and these probes have none; bake with them: {} "
-                            "--profile default",
+                            "--profile probes",
                             entry.name, bakeCommand(sceneFile, probes->file)),
             .file = probes->file});
     }

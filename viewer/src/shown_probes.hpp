@@ -28,7 +28,8 @@ struct ShownProbes {
     std::vector<ShownProbe> probes;
     bool ofThisScene = true;  ///< baked for the scene as it is now
     gpu::GpuProbes field;
-    std::optional<gpu::GpuFaces> faces = {};  ///< light on the faces of the scene that is shown
+    std::optional<gpu::GpuFaces> faces = {};       ///< light on the faces of the scene that is shown
+    std::vector<FaceInstance> faceInstances = {};  ///< whose they are
 };
 
 /// "court.toml" -> "court.pf_probe", whether or not it is there; likewise for a .pf_vox file. Of a scene
@@ -48,17 +49,18 @@ struct ProbeRequest {
 /// Edge of the smallest visible voxel, metres.
 float voxelMetresOf(const LoadedScene& scene);
 
-/// Reads a field and uploads it. Probes that were baked for another state of the scene are used with the
-/// diagnostic "probes-other-scene", which tells how to bake anew. Errors: those of ProbeFileReader::open
-/// (what a file is that is no probe file, and how to make one) and GpuProbes::upload, with `file`.
+/// Reads a field and uploads it; light on faces as well, where its models are those of `gpuScene`. Probes
+/// that were baked for another state of the scene are used with the diagnostic "probes-other-scene", which
+/// tells how to bake anew. Errors: those of ProbeFileReader::open (what a file is that is no probe file, and
+/// how to make one) and GpuProbes::upload, with `file`.
 Result<ShownProbes> openProbes(gpu::Device& device, const std::filesystem::path& file,
-                               const LoadedScene& scene, const std::filesystem::path& sceneFile,
-                               Diagnostics& diagnostics);
+                               const LoadedScene& scene, const gpu::Scene& gpuScene,
+                               const std::filesystem::path& sceneFile, Diagnostics& diagnostics);
 
 /// The probes that a request leads to; nothing when it asks for none, or for those beside the scene and there
 /// are none. Errors: those of openProbes.
 Result<std::optional<ShownProbes>> findProbes(gpu::Device& device, const ProbeRequest& request,
-                                              const LoadedScene& scene,
+                                              const LoadedScene& scene, const gpu::Scene& gpuScene,
                                               const std::filesystem::path& sceneFile,
                                               Diagnostics& diagnostics);
 

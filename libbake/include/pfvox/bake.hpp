@@ -1,6 +1,7 @@
-// Bake: a scene becomes a field of light-field probes.
+// Bake: a scene becomes light on the faces of its voxels, and a field of probes.
 //
 //     LoadedScene -> [bakeProbes] -> out.pf_probe
+//                     faces: links -> sweeps -> division -> final gather -> journal
 //                     per probe: place -> what it sees -> light there -> small layers -> journal
 //                     at the end: proximity grid -> file
 //
@@ -36,10 +37,14 @@ struct FaceSettings {
     bool divide = true;  ///< several values a face beside lamps, where light bends, and at rims
 };
 
+/// What suits a device: less noise than the eye sees on a GPU, a picture within minutes without.
+FaceSettings faceSettingsFor(const gpu::DeviceInfo& device);
+
 /// How a bake is done.
 struct BakeSettings {
     ProbeResolution resolution = resolutionOf(ProbeProfile::Default);  ///< of the maps
-    FaceSettings faces;
+    /// Light on faces. The light of probes is then taken from it, not traced. Nothing = probes alone.
+    std::optional<FaceSettings> faces;
     std::uint64_t seed = 0;
     std::uint32_t minSamples = 32;    ///< paths a texel; a multiple of 16
     std::uint32_t maxSamples = 4096;  ///< a multiple of 16, >= minSamples
@@ -65,8 +70,14 @@ struct BakeSettings {
     std::string toolName = "pfvox";
 };
 
+/// What a bake works on.
+enum class BakeStage : std::uint8_t { Faces, Probes };
+
 /// Where a bake stands.
 struct BakeProgress {
+    BakeStage stage = BakeStage::Probes;
+    std::uint64_t faces = 0;         ///< of the scene, where their light is baked
+    double faceNoise = 0.0;          ///< relative, of the last round; 0 before the first
     std::uint64_t probes = 0;        ///< to be baked in all
     std::uint64_t probesDone = 0;    ///< those that the journal had counted
     std::uint64_t probesReused = 0;  ///< of these, taken from the journal
@@ -96,8 +107,24 @@ struct BakePass {
     std::uint64_t rays = 0;
     double gpuMs = 0.0;
 };
+/// Light on faces: what was done and what came of it.
+struct FaceReport {
+    std::uint64_t faces = 0;
+    std::uint64_t reused = 0;   ///< whose light was taken from the journal
+    std::uint64_t divided = 0;  ///< with several values
+    std::uint64_t values = 0;
+    std::uint32_t sweeps = 0;    ///< of the light through the links
+    double meanNoise = 0.0;      ///< relative standard error
+    double noisyFraction = 0.0;  ///< of the faces: stopped at maxRays
+    std::uint64_t fileBytes = 0;
+    BakePass base;   ///< sun, links, sweeps
+    BakePass light;  ///< final gather
+    std::uint64_t stepLimitRays = 0;
+};
+
 /// What a bake did and what came of it.
 struct BakeReport {
+    std::optional<FaceReport> faces;
     bool upToDate = false;  ///< the output had this content already: nothing was done, the rest is empty
     BakePass geometry;
     BakePass light;              ///< paths, shadow rays counted

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <mutex>
 #include <pfvox/bake.hpp>
+#include <pfvox/gpu_faces.hpp>
 #include <pfvox/gpu_scene.hpp>
 #include <pfvox/probe_file.hpp>
 
@@ -14,6 +15,7 @@
 #include "bake/probe_maps.hpp"
 #include "bake/probe_placement.hpp"
 #include "bake/surface_samples.hpp"
+#include "faces/face_stage.hpp"
 
 namespace pfvox {
 
@@ -59,24 +61,31 @@ class Baker {
         warnAboutGrid();
         const EmitterList emitters = makeEmitters(models_);
         report_.emitterFaces = emitters.faces.size();
-        PFVOX_TRY(
-            const gpu::Scene, gpuScene,
-            gpu::Scene::build(device_, gpu::partsOf(scene_), diagnostics_, {.origin = scene_.origin()}));
+        PFVOX_TRY(const gpu::Scene, gpuScene,
+                  gpu::Scene::build(device_, gpu::partsOf(scene_), diagnostics_,
+                                    {.origin = scene_.origin(), .faces = settings_.faces.has_value()}));
+        ProbeWriteSettings write{.encode = {.zstdLevel = settings_.zstdLevel, .contentKey = key},
+                                 .resume = settings_.resume,
+                                 .replaceReadOnly = settings_.force};
+        if (settings_.faces) write.faces = faceInfoFor(gpuScene, settings_);
+        PFVOX_TRY(ProbeFileWriter, writer, ProbeFileWriter::open(output, info_, write, diagnostics_));
+        std::optional<gpu::GpuFaces> faces;
+        if (settings_.faces) {
+            PFVOX_TRY(gpu::GpuFaces, baked, bakeFaces(gpuScene, *write.faces, emitters, writer));
+            faces = std::move(baked);
+        }
         PFVOX_TRY(ProbeTracer, tracer,
                   ProbeTracer::create(device_, gpuScene,
                                       {.sun = scene_.scene.sun,
                                        .sky = scene_.scene.sky,
                                        .emitters = emitters,
                                        .hasGlass = hasGlass(),
-                                       .depth = info_.depth},
+                                       .depth = info_.depth,
+                                       .faces = faces ? &*faces : nullptr},
                                       settings_));
-        const ProbeWriteSettings write{.encode = {.zstdLevel = settings_.zstdLevel, .contentKey = key},
-                                       .resume = settings_.resume,
-                                       .replaceReadOnly = settings_.force};
-        PFVOX_TRY(ProbeFileWriter, writer, ProbeFileWriter::open(output, info_, write, diagnostics_));
         PFVOX_CHECK(bakeAll(tracer, writer));
         PFVOX_TRY(const std::uint64_t, given, tracer.stepLimitRays());
-        report_.stepLimitRays = given;
+        report_.stepLimitRays += given;
         PFVOX_CHECK(finish(writer, output));
         report_.totalMs = 1e3 * secondsSince(started_);
         return report_;
@@ -117,10 +126,30 @@ class Baker {
                         most));
     }
 
+    // --- Faces ---
+
+    Result<gpu::GpuFaces> bakeFaces(const gpu::Scene& gpuScene, const FaceLightInfo& info,
+                                    const EmitterList& emitters, ProbeFileWriter& writer) {
+        stage_ = BakeStage::Faces;
+        report_.faces = FaceReport{.faces = gpuScene.faceCount()};
+        const FaceStage stage{.device = device_,
+                              .gpuScene = gpuScene,
+                              .scene = scene_.scene,
+                              .emitters = emitters,
+                              .settings = settings_,
+                              .info = info,
+                              .field = fieldHash(info_, settings_)};
+        auto light = bakeFaceLight(stage, writer, *report_.faces, workOf(facePass_));
+        if (!light) return tl::make_unexpected(light.error());
+        report_.stepLimitRays += report_.faces->stepLimitRays;
+        stage_ = BakeStage::Probes;
+        return gpu::GpuFaces::upload(device_, gpuScene, *light);
+    }
+
     // --- Probes ---
 
     Result<void> bakeAll(ProbeTracer& tracer, ProbeFileWriter& writer) {
-        const ContentKey field = fieldHash(info_);
+        const ContentKey field = fieldHash(info_, settings_);
         Background background;
         report_.probes = info_.range.size();
         records_.resize(info_.range.size());
@@ -227,10 +256,12 @@ class Baker {
     }
 
     Result<void> pieceDone() {
-        BakeProgress progress{.probes = info_.range.size(),
+        BakeProgress progress{.stage = stage_,
+                              .faces = report_.faces ? report_.faces->faces : 0,
+                              .probes = info_.range.size(),
                               .probesDone = baked_ + report_.reused,
                               .probesReused = report_.reused,
-                              .rays = report_.geometry.rays + report_.light.rays,
+                              .rays = report_.geometry.rays + report_.light.rays + facePass_.rays,
                               .elapsedSeconds = secondsSince(started_),
                               .gpuMs = report_.geometry.gpuMs + report_.light.gpuMs,
                               .secondsLeft = std::nullopt};
@@ -316,6 +347,8 @@ class Baker {
     SolidQuery solids_;
     BakeReport report_;
     std::vector<ProbeRecord> records_;  ///< from range.first on
+    BakeStage stage_ = BakeStage::Probes;
+    BakePass facePass_;
     std::uint64_t baked_ = 0;
     std::uint64_t samples_ = 0;
     std::uint64_t surfaceTexels_ = 0;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "bake/probe_tracer.hpp"
+#include "shared/faces.glsl.h"
 #include "shared/probe_maths.glsl.h"
 
 namespace pfvox::bake {
@@ -38,10 +39,33 @@ bool isBatches(std::uint32_t samples) {
     return samples != 0 && samples % shared::kBatchSamples == 0;
 }
 
+/// 1, 4, 16 ... times as many.
+bool isPowerOfFour(std::uint32_t more, std::uint32_t than) {
+    while (than < more && than <= more / 4) than *= 4;
+    return than == more;
+}
+
+Result<void> checkFaces(const FaceSettings& faces) {
+    const auto isBatches = [](std::uint32_t rays) { return rays != 0 && rays % shared::kFaceBatchRays == 0; };
+    if (!isBatches(faces.baseRays) || !isBatches(faces.minRays) || !isBatches(faces.maxRays))
+        return fail(ErrorCode::BadValue,
+                    fmt::format("{}, {} and {} rays of a face: all are multiples of {}", faces.baseRays,
+                                faces.minRays, faces.maxRays, shared::kFaceBatchRays));
+    if (!isPowerOfFour(faces.maxRays, faces.minRays) || faces.maxRays > (1u << 24) ||
+        faces.baseRays > (1u << 16))
+        return fail(ErrorCode::BadValue,
+                    fmt::format("rays of a face from {} to {}: the second is 1, 4, 16 ... times the first",
+                                faces.minRays, faces.maxRays));
+    if (!(faces.noiseTarget >= 0.0f) || !std::isfinite(faces.noiseTarget))
+        return fail(ErrorCode::BadValue, "the noise target of faces is a number from 0");
+    return {};
+}
+
 }  // namespace
 
 Result<void> checkSettings(const BakeSettings& settings, const ProbeGrid& grid) {
     PFVOX_CHECK(checkResolution(settings.resolution));
+    if (settings.faces) PFVOX_CHECK(checkFaces(*settings.faces));
     if (!isBatches(settings.minSamples) || !isBatches(settings.maxSamples) ||
         settings.maxSamples < settings.minSamples || settings.maxSamples > (1u << 24))
         return fail(
@@ -65,3 +89,17 @@ Result<void> checkSettings(const BakeSettings& settings, const ProbeGrid& grid) 
 }
 
 }  // namespace pfvox::bake
+
+namespace pfvox {
+
+FaceSettings faceSettingsFor(const gpu::DeviceInfo& device) {
+    FaceSettings settings;
+    if (device.kind != gpu::DeviceKind::Software) return settings;
+    settings.baseRays = 128;
+    settings.minRays = 128;
+    settings.maxRays = 512;
+    settings.noiseTarget = 0.03f;
+    return settings;
+}
+
+}  // namespace pfvox

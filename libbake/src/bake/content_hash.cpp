@@ -98,7 +98,7 @@ ContentKey bakeContentKey(const LoadedScene& scene, const BakeSettings& settings
                           const gpu::DeviceInfo& device) {
     const ProbeFieldInfo info = bake::fieldInfo(scene, settings, device);
     Hasher hasher;
-    hasher.add(bake::fieldHash(info));
+    hasher.add(bake::fieldHash(info, settings));
     hasher.add(scene.scene.probes.proximityCells)
         .add(std::uint8_t{settings.proximity})
         .add(std::string_view(settings.toolName));
@@ -111,7 +111,9 @@ ContentKey shaderHash() {
     Hasher hasher;
     for (const auto& shader :
          {shaders::kBakeGeometry, shaders::kBakeTiles, shaders::kBakeBegin, shaders::kBakeCast,
-          shaders::kBakeScatter, shaders::kBakeQueue, shaders::kBakeGather, shaders::kBakeFinish})
+          shaders::kBakeScatter, shaders::kBakeQueue, shaders::kBakeGather, shaders::kBakeFinish,
+          shaders::kBakeFaces, shaders::kFaceSun, shaders::kFaceGather, shaders::kFaceSweep,
+          shaders::kFaceNoise, shaders::kFaceDivide})
         hasher.addAll(shader);
     return hasher.key();
 }
@@ -120,7 +122,7 @@ std::string deviceName(const gpu::DeviceInfo& device) {
     return device.name + ", " + device.driver;
 }
 
-ContentKey fieldHash(const ProbeFieldInfo& info) {
+ContentKey fieldHash(const ProbeFieldInfo& info, const BakeSettings& settings) {
     Hasher hasher;
     hasher.add(kBakeVersion).add(info.sceneHash).add(info.shaderHash).add(std::string_view(info.deviceName));
     if (info.grid.origin != glm::dvec3(0.0)) hasher.add(info.grid.origin);
@@ -129,7 +131,8 @@ ContentKey fieldHash(const ProbeFieldInfo& info) {
     hasher.add(r.depth).add(r.light).add(r.irradiance).add(r.moments);
     hasher.add(info.depth.scale).add(info.depth.farMetres);
     const auto addSetting = [&](const ProbeSetting&, const auto& value) {
-        if constexpr (std::is_arithmetic_v<std::decay_t<decltype(value)>>) {
+        if constexpr (std::is_arithmetic_v<std::decay_t<decltype(value)>> ||
+                      std::is_enum_v<std::decay_t<decltype(value)>>) {
             hasher.add(value);
         } else {
             PFVOX_ASSERT(value.has_value());  // fieldInfo() knows all of them
@@ -137,7 +140,29 @@ ContentKey fieldHash(const ProbeFieldInfo& info) {
         }
     };
     forEachProbeSetting(addSetting, info.settings);
+    if (settings.faces) {
+        const FaceBakeSettings faces = faceBakeSettings(settings);
+        forEachFaceSetting(addSetting, faces);
+    }
     return hasher.key();
+}
+
+ContentKey chunkHash(const ContentKey& field, std::uint32_t chunk) {
+    return Hasher{}.add(field).add(std::string_view("faces")).add(chunk).key();
+}
+
+FaceBakeSettings faceBakeSettings(const BakeSettings& settings) {
+    const FaceSettings& faces = *settings.faces;
+    return {
+        .seed = settings.seed,
+        .baseRays = faces.baseRays,
+        .sweeps = std::min(settings.maxBounces.value_or(shared::kMaxPathBounces), shared::kMaxPathBounces),
+        .minRays = faces.minRays,
+        .maxRays = faces.maxRays,
+        .noiseTarget = faces.noiseTarget,
+        .maxBounces = settings.maxBounces.value_or(kUnlimitedBounces),
+        .sampling = static_cast<std::uint32_t>(settings.sampling),
+        .divide = faces.divide};
 }
 
 ContentKey probeHash(const ContentKey& field, std::uint32_t probe) {

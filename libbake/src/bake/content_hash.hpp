@@ -12,7 +12,11 @@ ContentKey shaderHash();
 std::string deviceName(const gpu::DeviceInfo& device);
 
 /// Of all that the probes of a field have in common: scene, programs, device, sampling, grid, maps.
-ContentKey fieldHash(const ProbeFieldInfo& info);
+ContentKey fieldHash(const ProbeFieldInfo& info, const BakeSettings& settings);
+/// Of a chunk of light on faces.
+ContentKey chunkHash(const ContentKey& field, std::uint32_t chunk);
+/// As files keep them. Precondition: there are faces.
+FaceBakeSettings faceBakeSettings(const BakeSettings& settings);
 /// Of one probe: fieldHash and its index.
 ContentKey probeHash(const ContentKey& field, std::uint32_t probe);
 

@@ -30,6 +30,14 @@ std::string damageIn(const ProbeFileReader& reader) {
             return;
         }
     });
+    if (!damage.empty() || !reader.faces()) return damage;
+    const FaceChunkRange chunks = reader.faces()->range;
+    tbb::parallel_for(chunks.first, chunks.end, [&](std::uint32_t chunk) {
+        const auto read = reader.readFaceChunk(chunk);
+        if (read) return;
+        const std::scoped_lock lock(mutex);
+        if (damage.empty()) damage = describe(read.error());
+    });
     return damage;
 }
 

@@ -63,8 +63,7 @@ class PathWaves::Recording {
                            .count = count,
                            .set = set,
                            .reserved0 = 0,
-                           .reserved1 = 0,
-                           .reserved2 = 0});
+                           .faces = glm::uvec2(0)});
     }
 
     glm::uvec2 wave_;

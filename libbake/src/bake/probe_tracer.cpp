@@ -88,7 +88,9 @@ Result<ProbeTracer::Programs> ProbeTracer::createPrograms(gpu::Device& device, b
     PFVOX_TRY(gpu::Program, resetTiles, create(shaders::kBakeTiles, "bake reset tiles", resetting));
     PFVOX_TRY(gpu::Program, tiles, create(shaders::kBakeTiles, "bake tiles", onlyGlass));
     PFVOX_TRY(gpu::Program, finish, create(shaders::kBakeFinish, "bake finish", onlyGlass));
-    return Programs{std::move(geometry), std::move(resetTiles), std::move(tiles), std::move(finish)};
+    PFVOX_TRY(gpu::Program, faces, create(shaders::kBakeFaces, "bake light of faces", onlyGlass));
+    return Programs{std::move(geometry), std::move(resetTiles), std::move(tiles), std::move(finish),
+                    std::move(faces)};
 }
 
 Result<ProbeTracer::Buffers> ProbeTracer::createBuffers(gpu::Device& device,
@@ -161,6 +163,7 @@ Result<ProbeTracer> ProbeTracer::createFor(gpu::Device& device, const gpu::Scene
                      .maxBatches = settings.maxSamples / shared::kBatchSamples,
                      .noiseTarget = static_cast<double>(settings.noiseTarget),
                      .noiseFloor = static_cast<double>(settings.noiseFloor)};
+    tracer.faces_ = input.faces;
     tracer.submitSeconds_ = settings.dispatchSeconds;
     return tracer;
 }
@@ -172,8 +175,7 @@ Result<double> ProbeTracer::run(const gpu::Program& program, std::uint32_t first
                                 .count = count,
                                 .set = 0,
                                 .reserved0 = 0,
-                                .reserved1 = 0,
-                                .reserved2 = 0};
+                                .faces = faces_ != nullptr ? faces_->address() : glm::uvec2(0)};
     const std::uint32_t groups = (count + perGroup - 1) / perGroup;
     const gpu::Dispatch dispatch{
         .program = &program,
@@ -214,7 +216,12 @@ Result<std::vector<shared::TileStatistics>> ProbeTracer::judgeTiles(const gpu::P
 }
 
 Result<void> ProbeTracer::light(const WorkDone& done) {
-    for (;;) {
+    if (faces_ != nullptr) {
+        PFVOX_TRY(const double, gpuMs, run(programs_.faces, 0, probeCount_ * tilesPerProbe(), 1));
+        PFVOX_CHECK(done(
+            {.rays = std::uint64_t{probeCount_} * resolution_.depth * resolution_.depth, .gpuMs = gpuMs}));
+    }
+    while (faces_ == nullptr) {
         std::vector<TileWork> work;
         for (std::uint32_t tile = 0; tile < judged_.size(); ++tile) {
             const std::uint32_t more = moreBatches(judged_[tile], rules_);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <pfvox/gpu_faces.hpp>
 #include <pfvox/gpu_scene.hpp>
 
 #include "bake/bake_scene.hpp"
@@ -23,6 +24,7 @@ struct TracerInput {
     const EmitterList& emitters;
     bool hasGlass = false;
     DepthEncoding depth;
+    const gpu::GpuFaces* faces = nullptr;  ///< light is taken from them, not traced; outlives the tracer
 };
 
 /// What was traced for one probe: texels row by row, `resolution.depth` and `resolution.light` along a row.
@@ -62,6 +64,7 @@ class ProbeTracer {
         gpu::Program resetTiles;
         gpu::Program tiles;
         gpu::Program finish;
+        gpu::Program faces;
     };
     struct Buffers {
         gpu::Buffer wave;  ///< shared::BakeWave
@@ -99,6 +102,7 @@ class ProbeTracer {
     Buffers buffers_;
     TracedResolution resolution_;
     TileRules rules_;
+    const gpu::GpuFaces* faces_ = nullptr;
     double submitSeconds_ = 0.25;
     std::uint32_t groupSize_ = 1;
     std::uint32_t probeCount_ = 0;  ///< of the group

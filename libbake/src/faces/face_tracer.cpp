@@ -114,7 +114,7 @@ Result<FaceTracer> FaceTracer::create(gpu::Device& device, const gpu::Scene& sce
     PFVOX_TRY(BakeSceneBuffers, bakeScene,
               BakeSceneBuffers::create(device, scene, sun, sky, emitters, settings));
     PFVOX_TRY(Programs, programs, createPrograms(device, scene));
-    const std::uint32_t links = linksFor(device, scene.faceCount(), settings.faces);
+    const std::uint32_t links = linksFor(device, scene.faceCount(), *settings.faces);
     PFVOX_TRY(Buffers, buffers, createBuffers(device, scene, links));
     FaceTracer tracer(device, scene, std::move(bakeScene), std::move(programs), std::move(buffers), settings);
     tracer.linkCount_ = links;
@@ -134,7 +134,7 @@ Result<FaceTracer::Values> FaceTracer::createValues(std::span<const std::uint32_
     PFVOX_TRY(gpu::Buffer, starts, device_->createBuffer(clusters.size_bytes(), "clusters of values"));
     PFVOX_TRY(gpu::Buffer, noise, device_->createBuffer(clusters.size_bytes(), "noise of values"));
     PFVOX_CHECK(put(*device_, starts, clusters));
-    const std::vector<std::uint32_t> wanted(count, settings_.faces.minRays / shared::kFaceBatchRays);
+    const std::vector<std::uint32_t> wanted(count, settings_.faces->minRays / shared::kFaceBatchRays);
     PFVOX_CHECK(put(*device_, goals, std::span<const std::uint32_t>(wanted)));
     Values values{.sums = std::move(sums),
                   .quarters = std::move(quarters),
@@ -171,7 +171,7 @@ Result<void> FaceTracer::describe(const Values& values) {
         .control = buffers_.control.addressWords(),
         .linkCount = linkCount_,
         .faceCount = scene_->faceCount(),
-        .noiseTarget = settings_.faces.noiseTarget,
+        .noiseTarget = settings_.faces->noiseTarget,
         .noiseFloor = noiseFloor_,
         .maxSteps = shared::kMaxGlassSteps,
         .reserved0 = 0};
@@ -278,9 +278,9 @@ Result<void> FaceTracer::solve(TracedFaces& result, const WorkDone& done) {
 // ---- The light of values ----
 
 Result<void> FaceTracer::gather(const Values& values, TracedFaces& result, const WorkDone& done) {
-    const std::uint32_t most = settings_.faces.maxRays / shared::kFaceBatchRays;
+    const std::uint32_t most = settings_.faces->maxRays / shared::kFaceBatchRays;
     std::uint32_t begin = 0;
-    for (std::uint32_t end = settings_.faces.minRays / shared::kFaceBatchRays;;
+    for (std::uint32_t end = settings_.faces->minRays / shared::kFaceBatchRays;;
          end = std::min(4 * end, most)) {
         PFVOX_CHECK(launch({.program = &programs_.gather,
                             .count = values.count,
@@ -330,7 +330,7 @@ Result<TracedFaces> FaceTracer::run(const WorkDone& done) {
     PFVOX_CHECK(describe(whole));  // knows the floor
     PFVOX_CHECK(gather(whole, result, done));
     std::vector<std::uint32_t> levels(faces, 0);
-    if (settings_.faces.divide) {
+    if (settings_.faces->divide) {
         PFVOX_TRY(std::vector<std::uint32_t>, found, divide(whole, result, done));
         levels = std::move(found);
     }
@@ -394,7 +394,7 @@ Result<TracedFaces> FaceTracer::assemble(const Values& whole, const std::optiona
         for (std::uint32_t face = clusters[c]; face < clusters[c + 1]; ++face) result.noise[face] = noise[c];
         const auto count = static_cast<double>(clusters[c + 1] - clusters[c]);
         noiseSum += count * static_cast<double>(noise[c]);
-        if (noise[c] > settings_.faces.noiseTarget) result.noisyValues += clusters[c + 1] - clusters[c];
+        if (noise[c] > settings_.faces->noiseTarget) result.noisyValues += clusters[c + 1] - clusters[c];
     }
     result.meanNoise = noiseSum / std::max(faces, 1u);
     return result;

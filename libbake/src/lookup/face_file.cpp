@@ -66,7 +66,8 @@ std::vector<std::vector<std::uint32_t>> facesOfChunks(const gpu::Scene& scene, c
     return chunks;
 }
 
-std::vector<FaceChunk> faceChunks(const gpu::Scene& scene, const FaceLightInfo& info, const FaceValues& light) {
+std::vector<FaceChunk> faceChunks(const gpu::Scene& scene, const FaceLightInfo& info,
+                                  const FaceValues& light) {
     const std::vector<std::vector<std::uint32_t>> faces = facesOfChunks(scene, info);
     const std::vector<std::uint64_t> first = firstValues(light.levels);
     std::vector<FaceChunk> chunks(faces.size());
@@ -80,26 +81,8 @@ std::vector<FaceChunk> faceChunks(const gpu::Scene& scene, const FaceLightInfo& 
     return chunks;
 }
 
-Result<FaceValues> readFaceValues(const ProbeFileReader& reader, const gpu::Scene& scene) {
-    const FaceLightInfo& info = *reader.faces();
-    if (info.instances != faceInstancesOf(scene))
-        return fail(ErrorCode::BadReference, "its light on faces is that of other models");
+FaceValues faceValues(const gpu::Scene& scene, const FaceLightInfo& info, std::span<const FaceChunk> chunks) {
     const std::vector<std::vector<std::uint32_t>> faces = facesOfChunks(scene, info);
-    if (info.range != FaceChunkRange{0, static_cast<std::uint32_t>(faces.size())})
-        return fail(ErrorCode::BadReference, "its light on faces is a part of the whole: merge the parts first");
-    std::vector<FaceChunk> chunks(faces.size());
-    std::mutex mutex;
-    std::optional<Error> error;
-    tbb::parallel_for(std::size_t{0}, faces.size(), [&](std::size_t i) {
-        Result<FaceChunk> read = reader.readFaceChunk(static_cast<std::uint32_t>(i));
-        if (read) {
-            chunks[i] = *std::move(read);
-            return;
-        }
-        const std::scoped_lock lock(mutex);
-        if (!error) error = read.error();
-    });
-    if (error) return tl::make_unexpected(*error);
     FaceValues light;
     light.levels.resize(scene.faceCount());
     for (std::size_t i = 0; i < faces.size(); ++i)
@@ -113,6 +96,30 @@ Result<FaceValues> readFaceValues(const ProbeFileReader& reader, const gpu::Scen
                 light.values[v] = chunks[i].values[next++];
     });
     return light;
+}
+
+Result<FaceValues> readFaceValues(const ProbeFileReader& reader, const gpu::Scene& scene) {
+    const FaceLightInfo& info = *reader.faces();
+    if (info.instances != faceInstancesOf(scene))
+        return fail(ErrorCode::BadReference, "its light on faces is that of other models");
+    const std::size_t count = faceChunkPlaces(info).size();
+    if (info.range != FaceChunkRange{0, static_cast<std::uint32_t>(count)})
+        return fail(ErrorCode::BadReference,
+                    "its light on faces is a part of the whole: merge the parts first");
+    std::vector<FaceChunk> chunks(count);
+    std::mutex mutex;
+    std::optional<Error> error;
+    tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+        Result<FaceChunk> read = reader.readFaceChunk(static_cast<std::uint32_t>(i));
+        if (read) {
+            chunks[i] = *std::move(read);
+            return;
+        }
+        const std::scoped_lock lock(mutex);
+        if (!error) error = read.error();
+    });
+    if (error) return tl::make_unexpected(*error);
+    return faceValues(scene, info, chunks);
 }
 
 }  // namespace pfvox
