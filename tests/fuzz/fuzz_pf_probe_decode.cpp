@@ -1,5 +1,6 @@
 // Any bytes as a PF_PROBE file: once as they are, and once as the changes to make behind the repaired hashes
 // of a small valid file.
+#include <array>
 #include <cstdlib>
 
 #include "support/pf_probe_surgery.hpp"
@@ -27,8 +28,10 @@ void decode(std::span<const std::byte> bytes) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     decode(std::as_bytes(std::span(data, size)));
-    static const test::OpenFile sample = test::openFile(test::probeSample());
-    test::OpenFile open = sample;
+    // With light on faces or without.
+    static const std::array<test::OpenFile, 2> samples{test::openFile(test::probeSample()),
+                                                       test::openFile(test::faceSample())};
+    test::OpenFile open = samples[size % 2];
     for (std::size_t i = 0; i + 4 <= size && i < 400; i += 4) {
         test::OpenFile::Part& part = open.parts[data[i] % open.parts.size()];
         part.raw[(data[i + 1] | std::size_t{data[i + 2]} << 8) % part.raw.size()] = data[i + 3];

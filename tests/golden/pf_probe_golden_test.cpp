@@ -1,4 +1,4 @@
-// The bytes of PF_PROBE 1.0 and 1.1. A reader must always take the file of every version; the writer of this
+// The bytes of PF_PROBE 1.0 to 1.2. A reader must always take the file of every version; the writer of this
 // version must make the same bytes again. Where the writer changes on purpose, run with PFVOX_UPDATE_GOLDEN=1
 // and say why in CHANGELOG.md.
 #include <gtest/gtest.h>
@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <pfvox/probe_file.hpp>
 
+#include "support/lit_faces.hpp"
 #include "support/probe_fields.hpp"
 #include "support/temp_folder.hpp"
 
@@ -16,11 +17,16 @@ struct Golden {
     const char* name;
     ProbeFieldInfo info;
     bool withProximity;
+    std::optional<FaceLightInfo> faces = {};
 
     std::filesystem::path file() const {
         return std::filesystem::path(PFVOX_TESTS_DIR) / "golden/data" / name;
     }
-    ProbeField field() const { return test::probeField(info, withProximity); }
+    ProbeField field() const {
+        ProbeField field = test::probeField(info, withProximity);
+        if (faces) field.faces = test::faceLight(*faces);
+        return field;
+    }
 };
 
 void PrintTo(const Golden& golden, std::ostream* out) {
@@ -30,6 +36,13 @@ void PrintTo(const Golden& golden, std::ostream* out) {
 ProbeFieldInfo shardInfo() {
     ProbeFieldInfo info = test::probeInfo({70000, 1, 1}, {0, 0, 3, 0});
     info.range = {69996, 70000};
+    return info;
+}
+
+/// Chunks of a shard, lossless.
+FaceLightInfo faceShard() {
+    FaceLightInfo info = test::faceInfo(FaceCodec::Lossless);
+    info.range = {1, 3};
     return info;
 }
 
@@ -60,11 +73,17 @@ INSTANTIATE_TEST_SUITE_P(Files, PfProbeGolden,
                                          Golden{"v1_0_wide.pf_probe", ofVersion1_0(shardInfo()), true},
                                          Golden{"v1_1.pf_probe", test::probeInfo(), true},
                                          Golden{"v1_1_shard.pf_probe", shardInfo(), false},
-                                         Golden{"v1_1_wide.pf_probe", shardInfo(), true}));
+                                         Golden{"v1_1_wide.pf_probe", shardInfo(), true},
+                                         Golden{"v1_2.pf_probe", test::probeInfo(), true, test::faceInfo()},
+                                         Golden{"v1_2_faces.pf_probe", test::noProbesInfo(), false,
+                                                faceShard()}));
 INSTANTIATE_TEST_SUITE_P(Files, PfProbeWritten,
                          testing::Values(Golden{"v1_1.pf_probe", test::probeInfo(), true},
                                          Golden{"v1_1_shard.pf_probe", shardInfo(), false},
-                                         Golden{"v1_1_wide.pf_probe", shardInfo(), true}));
+                                         Golden{"v1_1_wide.pf_probe", shardInfo(), true},
+                                         Golden{"v1_2.pf_probe", test::probeInfo(), true, test::faceInfo()},
+                                         Golden{"v1_2_faces.pf_probe", test::noProbesInfo(), false,
+                                                faceShard()}));
 
 TEST_P(PfProbeWritten, WriterMakesTheSameBytes) {
     const ContentKey key{{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16}};

@@ -163,7 +163,9 @@ TEST_P(ContainerHostile, SectionsMissingOrTwice) {
         // What need not be understood, cameras and the proximity grid may be absent; nothing refers to them.
         const std::string name(entry.fourcc.data(), 4);
         const bool isOptional = (entry.flags & layout::kSectionMustUnderstand) == 0;
-        EXPECT_EQ(decode(format().close(open)).has_value(), isOptional || name == "CAMR" || name == "PROX");
+        const bool isHalf = name == "FACE" || name == "FDAT";  // both or none
+        EXPECT_EQ(decode(format().close(open)).has_value(),
+                  (isOptional && !isHalf) || name == "CAMR" || name == "PROX");
     }
 }
 
@@ -194,8 +196,8 @@ TEST_P(ContainerHostile, ForeignBytesBetweenSections) {
     FAIL() << "no gap between sections";
 }
 
-INSTANTIATE_TEST_SUITE_P(BothFormats, ContainerHostile,
-                         testing::Values(&test::kVoxFormat, &test::kProbeFormat),
+INSTANTIATE_TEST_SUITE_P(AllFormats, ContainerHostile,
+                         testing::Values(&test::kVoxFormat, &test::kProbeFormat, &test::kFaceFormat),
                          [](const auto& tested) { return std::string(tested.param->name); });
 
 }  // namespace

@@ -47,7 +47,8 @@ TEST_P(MemoryBudget, BombsAreRefusedBeforeTheyUnpack) {
     for (std::size_t i = 0; i < count; ++i) {
         OpenFile open = test::openFile(GetParam()->sample());
         OpenFile::Part& part = open.parts[i];
-        if (std::string_view(part.entry.fourcc.data(), 4) == "DATA") continue;
+        const std::string_view name(part.entry.fourcc.data(), 4);
+        if (name == "DATA" || name == "FDAT") continue;
         SCOPED_TRACE(std::string(part.entry.fourcc.data(), 4));
         const std::size_t recordBytes = std::max<std::size_t>(part.raw.size() / part.entry.count, 1);
         part.raw.assign(48 * kMiB / recordBytes * recordBytes, 0);
@@ -76,6 +77,21 @@ TEST_P(MemoryBudget, SmallestLimitIsWhatReadingTakes) {
         const auto asset = buildOctrees(test::assetOf(std::move(models)), Limits{}, {.lod = true}).value();
         files.push_back(encodePfVox(asset, {}).value());
         files.push_back(encodePfVox(asset, {.profile = Profile::Resident}).value());
+    } else if (GetParam() == &test::kFaceFormat) {
+        ProbeField field = test::probeField(test::noProbesInfo(), false);
+        field.faces = FaceLight{};
+        field.faces->info.facesPerChunk = 40000;
+        field.faces->info.instances = {{.index = {}, .faceCounts = std::vector<std::uint32_t>(20000, 30)}};
+        field.faces->info.range.end = 15;
+        for (std::uint32_t chunk = 0; chunk < 15; ++chunk) {
+            field.faces->chunks.push_back({.levels = {}, .values = {}});
+            field.faces->info.chunks.emplace_back();
+            FaceChunk& light = field.faces->chunks.back();
+            light.levels.resize(faceChunkPlaces(field.faces->info)[chunk].faceCount);
+            for (std::uint32_t i = 0; i < light.levels.size(); ++i)
+                light.values.push_back(14u << 27 | test::mix(chunk, i) % (1u << 27));
+        }
+        files.push_back(encodePfProbe(field, {}).value());
     } else {
         files.push_back(
             encodePfProbe(test::probeField(test::probeInfo({8, 4, 4}, {64, 64, 8, 14})), {}).value());
@@ -102,7 +118,8 @@ TEST_P(MemoryBudget, SmallestLimitIsWhatReadingTakes) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(BothFormats, MemoryBudget, testing::Values(&test::kVoxFormat, &test::kProbeFormat),
+INSTANTIATE_TEST_SUITE_P(AllFormats, MemoryBudget,
+                         testing::Values(&test::kVoxFormat, &test::kProbeFormat, &test::kFaceFormat),
                          [](const auto& tested) { return std::string(tested.param->name); });
 
 /// A file of about a kilobyte: instances, layers, materials, models and notes that all have one name of 1

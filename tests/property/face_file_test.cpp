@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <pfvox/probe_file.hpp>
 #include <random>
 #include <thread>
@@ -217,6 +218,92 @@ TEST(FaceFile, WriterNamesWhatIsMissingAndRefusesWhatDoesNotFit) {
     EXPECT_EQ(opens([](FaceLightInfo& f) { f.facesPerChunk = 0; }), BadValue);
     EXPECT_EQ(opens([](FaceLightInfo& f) { f.settings.noiseTarget = -1; }), BadValue);
     EXPECT_EQ(opens([](FaceLightInfo& f) { f.instances[0].faceCounts[1] = 1u << 30; }), BadValue);
+}
+
+class FaceMerge : public testing::Test {
+  protected:
+    std::filesystem::path write(const ProbeFieldInfo& info, const FaceLightInfo& faces) {
+        const auto file = folder_ / ("s" + std::to_string(written_++));
+        test::writeText(file, asText(encodePfProbe(litField(info, faces), {}).value()));
+        return file;
+    }
+    std::string merge(const std::vector<std::filesystem::path>& shards, bool allowPart = false) {
+        DiagnosticList diagnostics;
+        const auto merged =
+            mergeProbeFields(shards, folder_ / "whole", {.allowPart = allowPart}, Limits{}, diagnostics);
+        return merged ? "merged" : describe(merged.error());
+    }
+    static ProbeFieldInfo probes(std::uint32_t first, std::uint32_t end) {
+        ProbeFieldInfo info = test::probeInfo();
+        info.range = {first, end};
+        return info;
+    }
+
+    test::TempFolder folder_;
+    int written_ = 0;
+};
+
+TEST_F(FaceMerge, ShardsGiveTheBytesOfTheWhole) {
+    const std::string whole = asText(encodePfProbe(litField(test::probeInfo()), {}).value());
+    // Probes and chunks need not be cut alike, and shards come in any order.
+    const std::vector<std::vector<std::filesystem::path>> cuts{
+        {write(probes(0, 12), faceShard(0, 3))},
+        {write(probes(6, 12), faceShard(2, 3)), write(probes(0, 6), faceShard(0, 2))},
+        {write(probes(0, 3), faceShard(1, 3)), write(probes(3, 12), faceShard(0, 1))},
+        {write(probes(0, 0), faceShard(0, 3)), write(probes(0, 12), faceShard(0, 0))},
+        {write(probes(7, 7), faceShard(2, 3)), write(probes(0, 12), faceShard(1, 1)),
+         write(probes(12, 12), faceShard(0, 2))}};
+    for (const auto& cut : cuts) {
+        EXPECT_EQ(merge(cut), "merged");
+        EXPECT_EQ(test::readText(folder_ / "whole"), whole);
+    }
+    const ProbeFieldInfo none = test::noProbesInfo();
+    EXPECT_EQ(merge({write(none, faceShard(1, 3)), write(none, faceShard(0, 1))}), "merged");
+    EXPECT_EQ(test::readText(folder_ / "whole"), asText(encodePfProbe(litField(none), {}).value()));
+    EXPECT_EQ(merge({write(none, faceShard(2, 3)), write(none, faceShard(1, 2))}, true), "merged");
+    EXPECT_EQ(test::readText(folder_ / "whole"),
+              asText(encodePfProbe(litField(none, faceShard(1, 3)), {}).value()));
+}
+
+TEST_F(FaceMerge, NamesMissingAndRepeatedChunks) {
+    const ProbeFieldInfo none = test::noProbesInfo();
+    EXPECT_THAT(merge({write(none, faceShard(1, 2))}),
+                HasSubstr("2 of 3 chunks of light on faces are in no shard: 0, 2"));
+    EXPECT_THAT(merge({write(none, faceShard(0, 1)), write(none, faceShard(2, 3))}, true),
+                HasSubstr("1 of 3 chunks of light on faces are in no shard: 1"));
+    EXPECT_THAT(merge({write(none, faceShard(0, 2)), write(none, faceShard(1, 3))}),
+                HasSubstr("chunks of light on faces 1 are also in another shard"));
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "whole"));
+}
+
+TEST_F(FaceMerge, NamesEachDifference) {
+    const ProbeFieldInfo none = test::noProbesInfo();
+    const auto front = write(none, faceShard(0, 1));
+    const auto refusal = [&](const std::function<void(FaceLightInfo&)>& change) {
+        FaceLightInfo back = faceShard(1, 3);
+        change(back);
+        return merge({front, write(none, back)});
+    };
+    EXPECT_THAT(refusal([](FaceLightInfo& f) { f.instances[2].index = {}; }),
+                testing::EndsWith("other faces"));
+    EXPECT_THAT(refusal([](FaceLightInfo& f) { f.facesPerChunk = 17; }),
+                testing::EndsWith("other chunks of faces"));
+    EXPECT_THAT(refusal([](FaceLightInfo& f) { f.settings.sweeps = 3; }), testing::EndsWith("with sweeps 3"));
+    EXPECT_THAT(refusal([](FaceLightInfo& f) { f.settings.codec = FaceCodec::Lossless; }),
+                testing::EndsWith("with codec of faces lossless"));
+    EXPECT_THAT(refusal([](FaceLightInfo& f) { f.settings.seed = 4; }), testing::EndsWith("with --seed 4"));
+    const auto plain = folder_ / "plain";
+    test::writeText(plain, asText(encodePfProbe(test::probeField(test::probeInfo(), false), {}).value()));
+    EXPECT_THAT(merge({plain, write(test::probeInfo(), faceShard(0, 3))}), HasSubstr("(light on faces)"));
+}
+
+TEST_F(FaceMerge, DamagedChunk) {
+    const auto file = write(test::noProbesInfo(), test::faceInfo());
+    std::string text = test::readText(file);
+    text[text.size() - 9] = static_cast<char>(text[text.size() - 9] ^ 0x10);
+    test::writeText(file, text);
+    EXPECT_THAT(merge({file}), HasSubstr("chunk 2 of light on faces"));
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "whole"));
 }
 
 TEST(FaceFile, SettingsTellWhatIsNotTheSame) {

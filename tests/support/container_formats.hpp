@@ -80,4 +80,13 @@ inline const ContainerFormat kProbeFormat{
         return {};
     }};
 
+/// A probe file with light on faces.
+inline const ContainerFormat kFaceFormat = [] {
+    ContainerFormat format = kProbeFormat;
+    format.name = "PfProbeFaces";
+    format.versionWords = "PF_PROBE 9.2";
+    format.sample = faceSample;
+    return format;
+}();
+
 }  // namespace pfvox::test

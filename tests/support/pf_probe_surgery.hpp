@@ -2,6 +2,7 @@
 #pragma once
 
 #include "pf_probe/records.hpp"
+#include "support/lit_faces.hpp"
 #include "support/pf_vox_surgery.hpp"
 #include "support/probe_fields.hpp"
 
@@ -10,6 +11,16 @@ namespace pfvox::test {
 /// A small file with a feature of every kind: inactive and relocated probes, all layers, a proximity grid.
 inline const Bytes& probeSample() {
     static const Bytes file = encodePfProbe(probeField(probeInfo({3, 2, 2}, {16, 4, 2, 2})), {}).value();
+    return file;
+}
+
+/// The same with light on faces, and few probes.
+inline const Bytes& faceSample() {
+    static const Bytes file = [] {
+        ProbeField field = probeField(probeInfo({2, 1, 1}, {16, 4, 2, 2}), false);
+        field.faces = faceLight();
+        return encodePfProbe(field, {}).value();
+    }();
     return file;
 }
 

@@ -33,8 +33,8 @@
 namespace pfvox {
 
 inline constexpr std::uint16_t kPfProbeVersionMajor = 1;  ///< another one cannot be read
-inline constexpr std::uint16_t kPfProbeVersionMinor = 1;  ///< of what is written; later ones can be read
-inline constexpr std::uint16_t kPfProbeFacesMinor = 2;    ///< of what is written with light on faces
+inline constexpr std::uint16_t kPfProbeVersionMinor = 2;  ///< newest that is written; later ones can be read
+inline constexpr std::uint16_t kPfProbePlainMinor = 1;    ///< of files without light on faces
 
 /// The maps that a probe may have. Their words are those that the GPU reads.
 enum class ProbeLayer : std::uint8_t {

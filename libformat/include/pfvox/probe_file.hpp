@@ -103,11 +103,11 @@ std::vector<Finding> validatePfProbeFile(const std::filesystem::path& file,
 std::filesystem::path probeJournalPath(const std::filesystem::path& output);
 /// How a file is begun.
 struct ProbeWriteSettings {
-    ProbeEncodeSettings encode;  ///< key and compression
-    /// The file has light on faces: of the chunks of this range. `chunks` is not used.
-    std::optional<FaceLightInfo> faces = {};
+    ProbeEncodeSettings encode;    ///< key and compression
     bool resume = false;           ///< take what a journal beside the output holds; else begin a new one
     bool replaceReadOnly = false;  ///< replace an output that is read-only, too
+    /// The file has light on faces: of the chunks of this range. `chunks` is not used.
+    std::optional<FaceLightInfo> faces = {};
 };
 
 /// Writes a file probe by probe.

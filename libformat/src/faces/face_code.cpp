@@ -51,8 +51,9 @@ std::array<std::uint64_t, 3> partsOf(const FaceCode& code) {
 }
 
 std::uint64_t mantissaOf(std::uint64_t part, std::uint32_t exponent) {
-    const std::uint64_t unit = std::uint64_t{kFractions} << (kPowerBits + exponent);
-    return (2 * part + unit) / (2 * unit);
+    // floor((2 part + unit) / (2 unit)) with unit = 255 * 2^(kPowerBits + exponent), by a constant divisor.
+    const std::uint32_t shift = kPowerBits + exponent;
+    return ((2 * part + (std::uint64_t{kFractions} << shift)) >> (shift + 1)) / kFractions;
 }
 
 /// The code next to a word.
@@ -71,10 +72,20 @@ FaceCode nearest(std::uint32_t word) {
     return code;
 }
 
+/// Whether mantissas are so fine that a word cannot be that of another code than the one next to it. Rounding
+/// moves each by 1/2 and the sum by 3/2; a fraction f of the sum then moves by 255 (1/2 + 3/2 f) / sum steps,
+/// which must be below a half. A little more for the table of powers.
+bool isFine(std::uint32_t word) {
+    const std::uint32_t red = word & kMaxMantissa;
+    const std::uint32_t blue = word >> 18 & kMaxMantissa;
+    const std::uint32_t sum = red + (word >> 9 & kMaxMantissa) + blue;
+    return sum >= 290 && sum * sum > 290 * sum + 800 * std::max(red, blue);
+}
+
 /// A code that stands for exactly this word, if one near it does; else the one next to it.
 FaceCode exact(std::uint32_t word) {
     const FaceCode center = nearest(word);
-    if (center.light == 0 || dequantize(center) == word) return center;
+    if (center.light == 0 || isFine(word) || dequantize(center) == word) return center;
     for (int light = -1; light <= 1; ++light) {
         for (int red = -1; red <= 1; ++red) {
             for (int blue = -1; blue <= 1; ++blue) {

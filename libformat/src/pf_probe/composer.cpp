@@ -89,7 +89,7 @@ Result<std::vector<std::byte>> composeHead(FilePlan& plan) {
     return container::writeSections(
         std::move(sections),
         {.format = container::kPfProbe,
-         .versionMinor = plan.faces == nullptr ? kPfProbeVersionMinor : kPfProbeFacesMinor,
+         .versionMinor = plan.faces == nullptr ? kPfProbePlainMinor : kPfProbeVersionMinor,
          .contentKey = plan.contentKey,
          .zstdLevel = kTableZstdLevel});
 }

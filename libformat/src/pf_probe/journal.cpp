@@ -48,7 +48,7 @@ JournalHeader headerOf(const WritePlan& plan) {
     JournalHeader header{
         .magic = probe_layout::kJournalMagic,
         .versionMajor = kPfProbeVersionMajor,
-        .versionMinor = kPfProbeFacesMinor,
+        .versionMinor = kPfProbeVersionMinor,
         .endianTag = layout::kEndianTag,
         .gridStart = {info.grid.start.x, info.grid.start.y, info.grid.start.z},
         .gridStep = {info.grid.step.x, info.grid.step.y, info.grid.step.z},

@@ -19,6 +19,30 @@ struct Shard {
     ProbeFileReader reader;
 };
 
+ProbeRange probesOf(const Shard& shard) {
+    return shard.reader.info().range;
+}
+ProbeRange chunksOf(const Shard& shard) {
+    const auto& faces = shard.reader.faces();
+    return faces ? ProbeRange{faces->range.first, faces->range.end} : ProbeRange{};
+}
+
+struct MergeTarget {
+    const std::filesystem::path& output;
+    bool allowPart = false;
+};
+
+/// What the light of shards must have in common, by name.
+void compareFaces(const std::optional<FaceLightInfo>& a, const std::optional<FaceLightInfo>& b,
+                  std::vector<std::string>& names) {
+    if (!a || !b) {
+        if (a.has_value() != b.has_value()) names.emplace_back("kinds of content (light on faces)");
+        return;
+    }
+    if (a->instances != b->instances) names.emplace_back("faces");
+    if (a->facesPerChunk != b->facesPerChunk) names.emplace_back("chunks of faces");
+}
+
 /// What two shards must have in common, by name.
 std::vector<std::string> differences(const ProbeFieldInfo& a, const ProbeFieldInfo& b) {
     std::vector<std::string> names;
@@ -46,11 +70,15 @@ std::string join(const std::vector<std::string>& names) {
 std::string otherSettings(const Shard& a, const Shard& b) {
     std::vector<std::string> first;
     std::vector<std::string> second;
-    for (ProbeSettingDifference& difference :
-         differencesOf(a.reader.info().settings, b.reader.info().settings)) {
-        first.push_back(std::move(difference.first));
-        second.push_back(std::move(difference.second));
-    }
+    const auto add = [&](std::vector<ProbeSettingDifference> differences) {
+        for (ProbeSettingDifference& difference : differences) {
+            first.push_back(std::move(difference.first));
+            second.push_back(std::move(difference.second));
+        }
+    };
+    add(differencesOf(a.reader.info().settings, b.reader.info().settings));
+    if (a.reader.faces() && b.reader.faces())
+        add(differencesOf(a.reader.faces()->settings, b.reader.faces()->settings));
     if (first.empty()) return {};
     return fmt::format("{} was baked with {}, {} with {}", a.file.string(), join(first), b.file.string(),
                        join(second));
@@ -58,7 +86,8 @@ std::string otherSettings(const Shard& a, const Shard& b) {
 
 /// Why two shards are not of one bake; empty = they are.
 std::string disagreement(const Shard& a, const Shard& b) {
-    const auto names = differences(a.reader.info(), b.reader.info());
+    auto names = differences(a.reader.info(), b.reader.info());
+    compareFaces(a.reader.faces(), b.reader.faces(), names);
     std::string why = names.empty() ? "" : "other " + join(names);
     if (const std::string settings = otherSettings(a, b); !settings.empty())
         why += (why.empty() ? "" : "; ") + settings;
@@ -89,15 +118,37 @@ Result<std::vector<Shard>> openShards(std::span<const std::filesystem::path> fil
             return refuse(shard.file,
                           fmt::format("does not belong to {}: {}", shards.front().file.string(), why));
     }
-    std::ranges::stable_sort(shards, {}, [](const Shard& s) { return s.reader.info().range.first; });
+    std::ranges::stable_sort(shards, {}, [](const Shard& shard) {
+        return std::pair(probesOf(shard).first, chunksOf(shard).first);
+    });
     return shards;
 }
 
-/// Shards, which are sorted, must follow each other without overlap and without holes.
-Result<void> checkCover(const std::vector<Shard>& shards, const std::filesystem::path& output,
-                        bool allowPart) {
-    const ProbeFieldInfo& first = shards.front().reader.info();
-    std::uint32_t end = allowPart ? first.range.first : 0;
+/// What a shard has of something that is counted; probes and chunks are joined alike.
+struct Part {
+    std::size_t shard = 0;
+    ProbeRange range;
+};
+
+/// Those that have something, in its order.
+std::vector<Part> partsOf(const std::vector<Shard>& shards, ProbeRange (*rangeOf)(const Shard&)) {
+    std::vector<Part> parts;
+    for (std::size_t i = 0; i < shards.size(); ++i)
+        if (const ProbeRange range = rangeOf(shards[i]); range.size() != 0) parts.push_back({i, range});
+    std::ranges::stable_sort(parts, {}, [](const Part& part) { return part.range.first; });
+    return parts;
+}
+
+/// Of all parts, which have no holes; of no parts where the first of them begins.
+ProbeRange coverOf(const std::vector<Part>& parts, ProbeRange whenEmpty) {
+    if (parts.empty()) return {whenEmpty.first, whenEmpty.first};
+    return {parts.front().range.first, parts.back().range.end};
+}
+
+/// Parts must follow each other without overlap and without holes.
+Result<void> checkCover(const std::vector<Shard>& shards, const std::vector<Part>& parts, std::uint32_t count,
+                        std::string_view what, const MergeTarget& target) {
+    std::uint32_t end = target.allowPart && !parts.empty() ? parts.front().range.first : 0;
     std::vector<ProbeRange> absent;
     std::uint64_t absentCount = 0;
     const auto noteHole = [&](ProbeRange hole) {
@@ -105,26 +156,27 @@ Result<void> checkCover(const std::vector<Shard>& shards, const std::filesystem:
         absent.push_back(hole);
         absentCount += hole.size();
     };
-    for (std::size_t i = 0; i < shards.size(); ++i) {
-        const ProbeRange range = shards[i].reader.info().range;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        const ProbeRange range = parts[i].range;
         if (range.first < end) {
             const ProbeRange twice{range.first, std::min(end, range.end)};
-            return refuse(shards[i].file,
-                          fmt::format("probes {} are also in another shard ({})",
-                                      probe::listProbes(std::span(&twice, 1)), shards[i - 1].file.string()));
+            return refuse(shards[parts[i].shard].file,
+                          fmt::format("{} {} are also in another shard ({})", what,
+                                      probe::listProbes(std::span(&twice, 1)),
+                                      shards[parts[i - 1].shard].file.string()));
         }
         noteHole({end, range.first});
         end = range.end;
     }
-    if (!allowPart) noteHole({end, static_cast<std::uint32_t>(first.grid.probeCount())});
+    if (!target.allowPart) noteHole({end, count});
     if (absent.empty()) return {};
-    return refuse(output, fmt::format("{} of {} probes are in no shard: {}", absentCount,
-                                      first.grid.probeCount(), probe::listProbes(absent)));
+    return refuse(target.output, fmt::format("{} of {} {} are in no shard: {}", absentCount, count, what,
+                                             probe::listProbes(absent)));
 }
 
-ProbeFieldInfo mergedInfo(const std::vector<Shard>& shards, Diagnostics& diagnostics) {
+ProbeFieldInfo mergedInfo(const std::vector<Shard>& shards, ProbeRange range, Diagnostics& diagnostics) {
     ProbeFieldInfo info = shards.front().reader.info();
-    info.range.end = shards.back().reader.info().range.end;
+    info.range = range;
     std::vector<std::string> devices;
     for (const Shard& shard : shards) {
         const std::string& device = shard.reader.info().deviceName;
@@ -163,28 +215,69 @@ Result<void> copyProbe(const ProbeFileReader& reader, std::uint32_t index, io::A
     return {};
 }
 
+faces::StoredChunk storedChunk(const ProbeFileReader& reader, std::uint32_t index) {
+    const FaceLightInfo& faces = *reader.faces();
+    return {.record = faces.chunks[index - faces.range.first], .frames = reader.faceFrames(index)};
+}
+
+/// As copyProbe.
+Result<void> copyChunk(const ProbeFileReader& reader, std::uint32_t index, io::AtomicFile& file) {
+    PFVOX_CHECK(reader.readFaceChunk(index));
+    PFVOX_TRY(const auto, stored, reader.readStoredFaces(index));
+    return file.write(stored);
+}
+
+/// Calls visit(reader, index) for each thing of the parts.
+template <class Visit>
+Result<void> forEachIn(const std::vector<Shard>& shards, const std::vector<Part>& parts, const Visit& visit) {
+    for (const Part& part : parts)
+        for (std::uint32_t index = part.range.first; index < part.range.end; ++index)
+            PFVOX_CHECK(visit(shards[part.shard].reader, index));
+    return {};
+}
+
 Result<void> merge(std::span<const std::filesystem::path> shards, const std::filesystem::path& output,
                    const ProbeMergeSettings& settings, const Limits& limits, Diagnostics& diagnostics) {
     if (shards.empty()) return refuse(output, "there are no shards to merge");
     PFVOX_TRY(const auto, opened, openShards(shards, limits, diagnostics));
-    PFVOX_CHECK(checkCover(opened, output, settings.allowPart));
-    probe::FilePlan plan{
-        .info = mergedInfo(opened, diagnostics), .contentKey = settings.contentKey, .probes = {}};
-    if (opened.size() == 1 && opened[0].reader.proximity()) plan.proximity = &*opened[0].reader.proximity();
-    if (settings.proximity) plan.proximity = &*settings.proximity;
-    for (const Shard& shard : opened) {
-        const ProbeRange range = shard.reader.info().range;
-        for (std::uint32_t index = range.first; index < range.end; ++index)
-            plan.probes.push_back(storedProbe(shard.reader, index));
+    const ProbeFileReader& first = opened.front().reader;
+    const auto probes = partsOf(opened, probesOf);
+    const auto chunks = partsOf(opened, chunksOf);
+    const MergeTarget target{.output = output, .allowPart = settings.allowPart};
+    const auto probeCount = static_cast<std::uint32_t>(first.info().grid.probeCount());
+    PFVOX_CHECK(checkCover(opened, probes, probeCount, "probes", target));
+    std::optional<FaceLightInfo> faces = first.faces();
+    if (faces) {
+        const auto chunkCount = static_cast<std::uint32_t>(faceChunkPlaces(*faces).size());
+        PFVOX_CHECK(checkCover(opened, chunks, chunkCount, "chunks of light on faces", target));
+        const ProbeRange range = coverOf(chunks, chunksOf(opened.front()));
+        faces->range = {range.first, range.end};
     }
+    probe::FilePlan plan{.info = mergedInfo(opened, coverOf(probes, first.info().range), diagnostics),
+                         .contentKey = settings.contentKey,
+                         .probes = {},
+                         .faces = faces ? &*faces : nullptr,
+                         .chunks = {}};
+    if (opened.size() == 1 && first.proximity()) plan.proximity = &*first.proximity();
+    if (settings.proximity) plan.proximity = &*settings.proximity;
+    PFVOX_CHECK(forEachIn(opened, probes, [&](const ProbeFileReader& reader, std::uint32_t index) {
+        plan.probes.push_back(storedProbe(reader, index));
+        return Result<void>{};
+    }));
+    PFVOX_CHECK(forEachIn(opened, chunks, [&](const ProbeFileReader& reader, std::uint32_t index) {
+        plan.chunks.push_back(storedChunk(reader, index));
+        return Result<void>{};
+    }));
     PFVOX_TRY(const auto, head, probe::composeHead(plan));
     PFVOX_TRY(io::AtomicFile, file, io::AtomicFile::create(output));
     PFVOX_CHECK(file.write(head));
-    for (const Shard& shard : opened) {
-        const ProbeRange range = shard.reader.info().range;
-        for (std::uint32_t index = range.first; index < range.end; ++index)
-            PFVOX_CHECK(copyProbe(shard.reader, index, file));
-    }
+    PFVOX_CHECK(forEachIn(opened, probes, [&](const ProbeFileReader& reader, std::uint32_t index) {
+        return copyProbe(reader, index, file);
+    }));
+    PFVOX_CHECK(file.write(plan.gapBeforeFaces(head)));
+    PFVOX_CHECK(forEachIn(opened, chunks, [&](const ProbeFileReader& reader, std::uint32_t index) {
+        return copyChunk(reader, index, file);
+    }));
     return file.commit();
 }
 
