@@ -229,7 +229,7 @@ TEST_F(LimitedVox2pf, whereOpenVdbHasTooFewThreadsTheRemedyIsNamed) {
     }
 }
 
-#ifndef __SANITIZE_ADDRESS__
+#ifndef PFVOX_ADDRESS_SANITIZER
 TEST_F(LimitedVox2pf, whereMemoryIsLittleItIsSaidOrTakenLessOf) {
     const ProcessResult result = limited("ulimit -v 100000", "in -o out -j 16");
     EXPECT_THAT(result.exitCode, ::testing::AnyOf(0, 1, 4)) << result.err;

@@ -7,7 +7,7 @@
 #include "support/memory.hpp"
 #include "support/vdb_writer.hpp"
 
-#ifdef __SANITIZE_ADDRESS__
+#ifdef PFVOX_ADDRESS_SANITIZER
 /// OpenVDB 10 drops the node that it is about to read when decompression throws in the middle of a tree: at
 /// most one path of nodes for each refused file, and nothing that a caller could free.
 extern "C" const char* __lsan_default_suppressions();

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
 #include <pfvox/pf_vox.hpp>
 #include <random>
@@ -354,7 +355,7 @@ TEST(PfVoxHostile, NamesThatAreNotUtf8) {
     OpenFile open = test::openFile(sampleFile());
     std::vector<std::uint8_t>& names = open.part("NAME").raw;
     const std::string brick = "brick";
-    const auto at = std::ranges::search(names, brick).begin();
+    const auto at = std::search(names.begin(), names.end(), brick.begin(), brick.end());
     ASSERT_NE(at, names.end());
     *at = 0xfc;
     const Bytes file = test::closeFile(std::move(open));

@@ -1,7 +1,7 @@
 // AddressSanitizer and GPU drivers: llvmpipe leaks a little, which is not ours. The Vulkan loader unloads
 // drivers before leaks are looked for, and then they have no name to be recognised by; so llvmpipe is kept
 // loaded. Linked into every test program that opens a device.
-#if defined(__SANITIZE_ADDRESS__)
+#ifdef PFVOX_ADDRESS_SANITIZER
 
 #include <dlfcn.h>
 

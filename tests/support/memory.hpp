@@ -28,7 +28,7 @@ class ResidentPeak {
     /// How far above the start the peak lies. Zero under AddressSanitizer, which keeps freed memory for a
     /// while.
     std::uint64_t growthBytes() const {
-#ifdef __SANITIZE_ADDRESS__
+#ifdef PFVOX_ADDRESS_SANITIZER
         return 0;
 #endif
         const std::uint64_t peak = detail::statusBytes("VmHWM:");

@@ -57,7 +57,7 @@ TEST(VdbModule, FileThatIsNoLibraryIsRefused) {
     EXPECT_THAT(refusal({folder.path()}), HasSubstr("pfvox_vdb.so"));
 }
 
-#ifndef __SANITIZE_ADDRESS__
+#ifndef PFVOX_ADDRESS_SANITIZER
 /// Opens the module with as much address space as this process has already.
 [[noreturn]] void openWithoutMemory() {
     std::size_t pages = 0;

@@ -156,7 +156,10 @@ class SettingsReader {
             return failAtRegion(ErrorCode::BadValue, node.source(),
                                 fmt::format("{} is a section", name.str()));
         }
-        for (const auto& [key, value] : *table) {
+        for (const auto& entry : *table) {
+            // Not [key, value]: clang before 16 cannot capture those.
+            const toml::key& key = entry.first;
+            const toml::node& value = entry.second;
             if (std::ranges::find(keys, key.str()) == keys.end()) return unknown(key, "key", keys);
             Result<void> read;
             forEachConvertSetting(
