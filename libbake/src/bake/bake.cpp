@@ -67,7 +67,7 @@ class Baker {
         ProbeWriteSettings write{.encode = {.zstdLevel = settings_.zstdLevel, .contentKey = key},
                                  .resume = settings_.resume,
                                  .replaceReadOnly = settings_.force};
-        if (settings_.faces) write.faces = faceInfoFor(gpuScene, settings_);
+        if (settings_.faces) write.faces = faceInfoFor(gpuScene, settings_, info_);
         PFVOX_TRY(ProbeFileWriter, writer, ProbeFileWriter::open(output, info_, write, diagnostics_));
         std::optional<gpu::GpuFaces> faces;
         if (settings_.faces) {

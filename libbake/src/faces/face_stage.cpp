@@ -16,8 +16,8 @@ namespace {
 /// All chunks from the journal, or nothing: a part of the faces costs as much as all of them.
 Result<std::vector<FaceChunk>> reused(const FaceStage& stage, ProbeFileWriter& writer) {
     std::vector<FaceChunk> chunks;
-    if (!stage.settings.resume) return chunks;
     const FaceChunkRange range = stage.info.range;
+    if (!stage.settings.resume || range.size() != faceChunkPlaces(stage.info).size()) return chunks;
     for (std::uint32_t i = range.first; i < range.end; ++i)
         if (!writer.reuseFaces(i, chunkHash(stage.field, i))) return chunks;
     for (std::uint32_t i = range.first; i < range.end; ++i) {
@@ -51,6 +51,7 @@ Result<void> write(const FaceStage& stage, const TracedFaces& traced, std::vecto
         for (std::uint32_t& value : chunks[i].values)
             value = storedFaceValue(stage.info.settings.codec, value);
         const auto chunk = static_cast<std::uint32_t>(i);
+        if (!stage.info.range.contains(chunk)) return;
         const Result<void> written =
             writer.appendFaces(chunk, chunks[i], recordOf(stage, traced, chunk, faces[i]));
         if (written) return;
@@ -83,16 +84,20 @@ Result<std::vector<FaceChunk>> trace(const FaceStage& stage, ProbeFileWriter& wr
 
 }  // namespace
 
-FaceLightInfo faceInfoFor(const gpu::Scene& scene, const BakeSettings& settings) {
+FaceLightInfo faceInfoFor(const gpu::Scene& scene, const BakeSettings& settings,
+                          const ProbeFieldInfo& probes) {
     FaceLightInfo info{.settings = faceBakeSettings(settings), .instances = faceInstancesOf(scene)};
-    info.range = {0, static_cast<std::uint32_t>(faceChunkPlaces(info).size())};
+    const std::uint64_t chunks = faceChunkPlaces(info).size();
+    const std::uint64_t all = probes.grid.probeCount();
+    const auto part = [&](std::uint32_t probe) { return static_cast<std::uint32_t>(chunks * probe / all); };
+    info.range = {part(probes.range.first), part(probes.range.end)};
     return info;
 }
 
 Result<FaceValues> bakeFaceLight(const FaceStage& stage, ProbeFileWriter& writer, FaceReport& report,
                                  const WorkDone& done) {
     PFVOX_TRY(std::vector<FaceChunk>, chunks, reused(stage, writer));
-    if (chunks.size() == stage.info.range.size()) {
+    if (chunks.size() == faceChunkPlaces(stage.info).size()) {
         report.reused = report.faces;
     } else {
         PFVOX_TRY(std::vector<FaceChunk>, traced, trace(stage, writer, report, done));
