@@ -8,9 +8,11 @@
 
 #include "face_bake.glsl"
 
-// Voxels to a lamp, and second differences over the mean, from which on a face has 2, 4, 8 values each way.
+// Voxels to a lamp, and second differences over the light, from which on a face has 2, 4, 8 values each way. A bilinear lookup
+// is off by an eighth of a second difference.
 const float kLampVoxels[3] = float[3](8.0, 4.0, 2.0);
-const float kBending[3] = float[3](0.02, 0.04, 0.08);
+const float kBending[3] = float[3](0.16, 0.32, 0.64);
+const float kDarkness = 4.0;     // times the floor of the noise: what is darker may bend more
 const float kDeviations = 5.0;  // of noise that do not count as bending: noise alone bends by 3.5, on average
 
 struct Neighbors {
@@ -60,7 +62,7 @@ float bendingAt(FaceBake faces, uint face, Neighbors beside) {
         variance += lower.y + upper.y;
         asked += 2.0;
     }
-    return (bending - kDeviations * sqrt(variance / asked)) / max(own.x, faces.noiseFloor);
+    return (bending - kDeviations * sqrt(variance / asked)) / max(own.x, kDarkness * faces.noiseFloor);
 }
 
 void main() {

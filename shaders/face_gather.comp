@@ -83,13 +83,63 @@ bool passGlass(Scene scene, inout Ray ray, inout vec3 throughput, inout float pd
     return true;
 }
 
-Found followRay(BakeScene bake, Ray ray, float pdf, uint maxSteps, inout RayCounts counts) {
+// Where light is looked for: the face, then what reflects the ray by a GGX lobe.
+struct Vertex {
+    vec3 origin;
+    vec3 normal;
+    vec3 toViewer;
+    Lobes lobes;
+};
+
+// Numbers of the face's own vertex come from a sequence, so that rays of a value are even.
+struct VertexNumbers {
+    float pick;
+    vec2 onEmitter;
+    vec2 direction;
+};
+VertexNumbers randomNumbers() {
+    float pick = rayRandom();
+    vec2 onEmitter = vec2(rayRandom(), rayRandom());
+    return VertexNumbers(pick, onEmitter, vec2(rayRandom(), rayRandom()));
+}
+
+// Each kind of ray is cast in one place, or the program would be three times as large and half as fast.
+Found followRay(BakeScene bake, Vertex vertex, VertexNumbers numbers, uint maxSteps, inout RayCounts counts) {
     Scene scene = Scene(bake.scene);
     Found found = Found(vec3(0.0), kNoFace, vec3(0.0), kInfinity, true);
     vec3 throughput = vec3(1.0);
     float travelled = 0.0;
+    float pdf = 0.0;
     uint lastGlass = kNoMaterial;
+    Ray ray;
+    bool atVertex = true;  // else behind glass
+    bool first = true;     // no lobe has reflected the ray yet
     for (uint step = 0u; step < maxSteps; ++step) {
+        if (atVertex) {
+            if (looksForEmitters(bake)) {
+                float metres;
+                found.direct += throughput * lightOfEmitter(bake, vertex.lobes, vertex.origin, vertex.normal, vertex.toViewer,
+                                                            numbers.pick, numbers.onEmitter, metres, counts);
+                if (first) found.lamp = min(found.lamp, metres);
+            }
+            if (kHasShine != 0u && !first && hasSun(bake, vertex.normal)) {
+                vec3 value = evaluateLobes(vertex.lobes, vertex.normal, vertex.toViewer, -bake.sunDirection).value;
+                if (maxOf(value) > 0.0) found.direct += throughput * value * sunAt(bake, vertex.origin, counts);
+            }
+            vec3 direction = sampleLobes(vertex.lobes, vertex.normal, vertex.toViewer, numbers.direction, 0.5);
+            Scattering s = evaluateLobes(vertex.lobes, vertex.normal, vertex.toViewer, direction);
+            if (maxOf(s.value) <= 0.0) return found;
+            throughput *= s.value / s.pdf;
+            if (!first && step >= kRouletteBounce) {
+                float survival = min(maxOf(throughput), 0.95);
+                if (rayRandom() >= survival) return found;
+                throughput /= survival;
+            }
+            ray = Ray(vertex.origin, kInfinity, direction, 0.0);
+            pdf = s.pdf;
+            travelled = 0.0;
+            lastGlass = kNoMaterial;
+        }
         Hit hit = castRay(scene, ray, counts);
         if (hit.instance == kNoInstance) {
             found.direct += throughput * skyRadiance(bake, ray.direction);
@@ -97,6 +147,7 @@ Found followRay(BakeScene bake, Ray ray, float pdf, uint maxSteps, inout RayCoun
         }
         Surface surface = surfaceOf(scene, ray, hit);
         MaterialRecord material = materialOf(scene, surface);
+        atVertex = false;
         if (kHasGlass != 0u && letsThrough(material) &&
             passGlass(scene, ray, throughput, pdf, travelled, lastGlass, hit, surface, material))
             continue;
@@ -110,7 +161,7 @@ Found followRay(BakeScene bake, Ray ray, float pdf, uint maxSteps, inout RayCoun
             vec3 emission = emissionOf(material);
             float weight = weightOfEmission(bake, pdf, travelled, emission, dot(surface.normal, toViewer));
             found.direct += throughput * emission * weight;
-            if (step == 0u) found.lamp = travelled;
+            if (first) found.lamp = min(found.lamp, travelled);
         }
         Lobes lobes = lobesOf(material, albedoOf(scene, surface), surface.normal, toViewer);
         if (kHasShine == 0u || lobes.pick <= 0.0 || rayRandom() >= lobes.pick) {
@@ -121,50 +172,23 @@ Found followRay(BakeScene bake, Ray ray, float pdf, uint maxSteps, inout RayCoun
         throughput /= lobes.pick;
         lobes.diffuse = vec3(0.0);
         lobes.pick = 1.0;
-        vec3 from = startOf(surface);
-        if (hasSun(bake, surface.normal)) {
-            vec3 value = evaluateLobes(lobes, surface.normal, toViewer, -bake.sunDirection).value;
-            if (maxOf(value) > 0.0) found.direct += throughput * value * sunAt(bake, from, counts);
-        }
-        if (looksForEmitters(bake)) {
-            float metres;
-            float pick = rayRandom();
-            vec2 u = vec2(rayRandom(), rayRandom());
-            found.direct += throughput * lightOfEmitter(bake, lobes, from, surface.normal, toViewer, pick, u, metres, counts);
-        }
-        vec2 u = vec2(rayRandom(), rayRandom());
-        vec3 direction = sampleLobes(lobes, surface.normal, toViewer, u, 0.0);
-        Scattering s = evaluateLobes(lobes, surface.normal, toViewer, direction);
-        if (maxOf(s.value) <= 0.0) return found;
-        throughput *= s.value / s.pdf;
-        if (step >= kRouletteBounce) {
-            float survival = min(maxOf(throughput), 0.95);
-            if (rayRandom() >= survival) return found;
-            throughput /= survival;
-        }
-        ray = Ray(from, kInfinity, direction, 0.0);
-        pdf = s.pdf;
-        travelled = 0.0;
-        lastGlass = kNoMaterial;
+        vertex = Vertex(startOf(surface), surface.normal, toViewer, lobes);
+        numbers = randomNumbers();
+        atVertex = true;
+        first = false;
     }
     return found;
 }
 
 // Ray `number` of a value.
 Found gather(BakeScene bake, FacePlane plane, FacePart part, uint key, uint number, uint maxSteps, inout RayCounts counts) {
+    Lobes white = Lobes(vec3(1.0), vec3(0.0), 0.0, 1.0, 0.0);
     vec3 origin = pointOf(plane, part, sobolPair(joinHash(key, kPointNumbers), number));
     rayState = joinHash(joinHash(key, kStepNumbers), number);
-    vec3 local = cosineDirection(sobolPair(joinHash(key, kDirectionNumbers), number));
-    Ray ray = Ray(origin, kInfinity, inFrame(local, plane.normal), 0.0);
-    Found found = followRay(bake, ray, local.z / kPi, maxSteps, counts);
-    if (!found.counts || !looksForEmitters(bake)) return found;
-    Lobes white = Lobes(vec3(1.0), vec3(0.0), 0.0, 1.0, 0.0);
-    float pick = sobolPair(joinHash(key, kPickNumbers), number).x;
-    vec2 u = sobolPair(joinHash(key, kEmitterNumbers), number);
-    float metres;
-    found.direct += lightOfEmitter(bake, white, origin, plane.normal, plane.normal, pick, u, metres, counts);
-    found.lamp = min(found.lamp, metres);
-    return found;
+    VertexNumbers numbers = VertexNumbers(sobolPair(joinHash(key, kPickNumbers), number).x,
+                                          sobolPair(joinHash(key, kEmitterNumbers), number),
+                                          sobolPair(joinHash(key, kDirectionNumbers), number));
+    return followRay(bake, Vertex(origin, plane.normal, plane.normal, white), numbers, maxSteps, counts);
 }
 
 uint keyOf(BakeScene bake, FacePart part) {

@@ -41,7 +41,7 @@ class InnerEdge : public BakeTest {
             PFVOX_TRY(const ProbeVerifier, verifier, ProbeVerifier::create(device()));
             const Camera camera{.name = "edge", .position = eye, .target = target, .fovYDegrees = 1.0};
             PFVOX_TRY(const VerifiedPicture, picture,
-                      verifier.render(device(), {scene, gpuScene, probes, camera},
+                      verifier.render(device(), {scene, gpuScene, camera, &probes},
                                       {.width = 96, .height = 1, .samples = 256}));
             for (const VerifiedPixel& pixel : picture.pixels)
                 if (pixel.surface) light.push_back(static_cast<double>(pixel.reference.x));

@@ -46,7 +46,7 @@ class VerifyReference : public BakeTest {
         PFVOX_TRY(const gpu::GpuProbes, probes,
                   gpu::GpuProbes::upload(device(), reader, {.voxelMetres = 0.1f}));
         PFVOX_TRY(const ProbeVerifier, verifier, ProbeVerifier::create(device()));
-        return body(verifier, VerifyInput{scene, gpuScene, probes, camera});
+        return body(verifier, VerifyInput{scene, gpuScene, camera, &probes});
     }
 
   private:

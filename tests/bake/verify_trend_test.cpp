@@ -91,7 +91,7 @@ class VerifyTrend : public BakeTest {
             PFVOX_TRY(
                 const gpu::GpuProbes, probes,
                 gpu::GpuProbes::upload(device(), reader, {.voxelMetres = 0.1f, .compactOnly = compact}));
-            const VerifyInput input{scene, gpuScene, probes, *camera};
+            const VerifyInput input{scene, gpuScene, *camera, &probes};
             if (!reference) {
                 PFVOX_TRY(ReferencePicture, traced,
                           verifier.trace(device(), input, {.width = 48, .height = 32, .samples = 128}));

@@ -278,10 +278,12 @@ Result<void> FaceTracer::solve(TracedFaces& result, const WorkDone& done) {
 // ---- The light of values ----
 
 Result<void> FaceTracer::gather(const Values& values, TracedFaces& result, const WorkDone& done) {
-    const std::uint32_t most = settings_.faces->maxRays / shared::kFaceBatchRays;
+    // A divided face has four values and more: a quarter of the rays each.
+    const std::uint32_t whole = settings_.faces->maxRays / shared::kFaceBatchRays;
+    const std::uint32_t least = settings_.faces->minRays / shared::kFaceBatchRays;
+    const std::uint32_t most = values.parts ? std::max(whole / 4, least) : whole;
     std::uint32_t begin = 0;
-    for (std::uint32_t end = settings_.faces->minRays / shared::kFaceBatchRays;;
-         end = std::min(4 * end, most)) {
+    for (std::uint32_t end = least;; end = std::min(4 * end, most)) {
         PFVOX_CHECK(launch({.program = &programs_.gather,
                             .count = values.count,
                             .perGroup = shared::kFaceGroupValues,
