@@ -11,7 +11,8 @@
 // Voxels to a lamp, and second differences over the light, from which on a face has 2, 4, 8 values each way. A bilinear lookup
 // is off by an eighth of a second difference.
 const float kLampVoxels[3] = float[3](8.0, 4.0, 2.0);
-const float kBending[3] = float[3](0.16, 0.32, 0.64);
+const float kBending[2] = float[2](0.16, 0.32);
+const uint kMostBendingLevels = 2u;  // of foliage every face bends
 const float kDarkness = 4.0;     // times the floor of the noise: what is darker may bend more
 const float kDeviations = 5.0;  // of noise that do not count as bending: noise alone bends by 3.5, on average
 
@@ -58,7 +59,9 @@ float bendingAt(FaceBake faces, uint face, Neighbors beside) {
         if (a == kNoFace && b == kNoFace) continue;
         vec2 lower = a == kNoFace ? lightAndVariance(faces, b) : lightAndVariance(faces, a);
         vec2 upper = b == kNoFace ? lower : lightAndVariance(faces, b);
-        bending += abs(lower.x + upper.x - 2.0 * own.x);
+        // From one side alone a difference may be a slope, which the lookup follows.
+        float across = abs(lower.x + upper.x - 2.0 * own.x);
+        bending += a == kNoFace || b == kNoFace ? 0.5 * across : across;
         variance += lower.y + upper.y;
         asked += 2.0;
     }
@@ -86,7 +89,9 @@ void main() {
         bending = max(bending, 0.5 * uintBitsToFloat(FaceWords(faces.goals).at[beside.at[i]]));
     }
     uint level = single ? 1u : 0u;
-    for (uint i = 0u; i < kMaxFaceLevel; ++i)
-        if (lamp <= kLampVoxels[i] || bending > kBending[i]) level = max(level, i + 1u);
+    for (uint i = 0u; i < kMaxFaceLevel; ++i) {
+        bool bends = i < kMostBendingLevels && bending > kBending[i];
+        if (lamp <= kLampVoxels[i] || bends) level = max(level, i + 1u);
+    }
     FaceWords(faces.levels).at[face] = FaceVectors(faces.sums).at[face].w > 0.0 ? level : 0u;
 }

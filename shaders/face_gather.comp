@@ -151,8 +151,8 @@ Found followRay(BakeScene bake, Vertex vertex, VertexNumbers numbers, uint maxSt
         if (kHasGlass != 0u && letsThrough(material) &&
             passGlass(scene, ray, throughput, pdf, travelled, lastGlass, hit, surface, material))
             continue;
-        if (surface.face == kFaceInside) {
-            found.counts = step != 0u;
+        if (surface.face == kFaceInside && step == 0u) {  // another instance covers the point
+            found.counts = false;
             return found;
         }
         travelled += hit.t;

@@ -70,6 +70,23 @@ bool sameLeaf(ModelRecord model, FaceLeaf leaf, ivec3 voxel, ivec3 other) {
     return (voxel >> (leaf.scale - int(model.leafScale))) == (other >> (leaf.scale - int(model.leafScale)));
 }
 
+// A ray that comes out of glass begins within the voxel behind it. The face that it came through is the exposed one that it looks
+// against most.
+void faceFromInside(ModelRecord model, FaceLeaf leaf, vec3 direction, inout CubeHit found) {
+    vec3 against = abs(direction);
+    for (uint i = 0u; i < 3u; ++i) {
+        uint axis = against.x >= maxOf(against) ? 0u : against.y >= against.z ? 1u : 2u;
+        uint face = 2u * axis + (direction[axis] > 0.0 ? 0u : 1u);
+        if (faceNumber(model, leaf, uvec3(found.voxel), face) != kNoFace) {
+            found.axis = axis;
+            found.face = face;
+            found.within = clamp(found.within, 0.0, 1.0);
+            return;
+        }
+        against[axis] = -1.0;
+    }
+}
+
 // Number of the face that a ray has hit, in the list of all; kNoFace where it is none.
 uint faceOfHit(Scene sceneBuffer, Ray ray, Hit hit) {
     SceneHeader scene = sceneBuffer.header;
@@ -77,6 +94,8 @@ uint faceOfHit(Scene sceneBuffer, Ray ray, Hit hit) {
     ModelRecord model = Models(scene.models).at[instance.model];
     CubeHit found = cubeHitOf(model, cubeFromWorldPoint(instance, ray.origin), cubeFromWorldVector(instance, ray.direction),
                               hit);
+    if (found.face == kFaceInside)
+        faceFromInside(model, leafOf(model, hit), cubeFromWorldVector(instance, ray.direction), found);
     if (found.face == kFaceInside) return kNoFace;
     uint number = faceNumber(model, leafOf(model, hit), uvec3(found.voxel), found.face);
     return number == kNoFace ? kNoFace : instance.firstFace + number;

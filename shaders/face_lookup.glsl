@@ -109,10 +109,12 @@ FaceLight faceLightOf(FaceField field, Scene sceneBuffer, Ray ray, Hit hit) {
     place.firstFace = instance.firstFace;
     CubeHit found = cubeHitOf(place.model, cubeFromWorldPoint(instance, ray.origin),
                               cubeFromWorldVector(instance, ray.direction), hit);
-    if (found.face == kFaceInside) return kNoFaceLight;
     if (isLevelOfDetail(place.model, WideNodes(place.model.nodes).at[hit.node], hit))
-        return meanFaceLight(field, instance, place.model, hit, found.face);
+        return meanFaceLight(field, instance, place.model, hit, min(found.face, 5u));
     place.leaf = leafOf(place.model, hit);
+    if (found.face == kFaceInside)
+        faceFromInside(place.model, place.leaf, cubeFromWorldVector(instance, ray.direction), found);
+    if (found.face == kFaceInside) return kNoFaceLight;
     place.voxel = found.voxel;
     place.face = found.face;
     return faceLightAt(field, place, vec2(found.within[(found.axis + 1u) % 3u], found.within[(found.axis + 2u) % 3u]));

@@ -8,9 +8,10 @@
 
 namespace pfvox::bake {
 
-/// What a file with light on the faces of this scene is begun with. A shard has the part of the chunks that it has of
-/// the probes, all of whose light it needs, and so computes it. Precondition: settings.faces.
-FaceLightInfo faceInfoFor(const gpu::Scene& scene, const BakeSettings& settings, const ProbeFieldInfo& probes);
+/// What a file with light on the faces of this scene is begun with. A shard has the part of the chunks that
+/// it has of the probes, all of whose light it needs, and so computes it. Precondition: settings.faces.
+FaceLightInfo faceInfoFor(const gpu::Scene& scene, const BakeSettings& settings,
+                          const ProbeFieldInfo& probes);
 
 struct FaceStage {
     gpu::Device& device;

@@ -18,6 +18,8 @@ namespace {
 constexpr double kNoiseFloor = 0.05;
 /// What is left of the light when a sweep ends the solution, relative, on the face where most is left.
 constexpr double kSolved = 1e-3;
+/// After so many sweeps it is known how light the scene is, about.
+constexpr std::uint32_t kSweepsForFloor = 2;
 /// Rays of one face are the most that a link's index can count: 2^32 links in all.
 constexpr std::uint64_t kMostLinks = 0xffffffffull;
 
@@ -239,7 +241,7 @@ Result<void> FaceTracer::launch(const Launch& work, BakePass& sum, const WorkDon
 
 // ---- The base: links, and bounces through them ----
 
-Result<void> FaceTracer::solve(TracedFaces& result, const WorkDone& done) {
+Result<void> FaceTracer::solve(const Values& values, TracedFaces& result, const WorkDone& done) {
     const std::uint32_t faces = scene_->faceCount();
     PFVOX_CHECK(launch({.program = &programs_.sun, .count = faces, .perGroup = shared::kFaceGroupValues},
                        result.sun, done));
@@ -267,12 +269,18 @@ Result<void> FaceTracer::solve(TracedFaces& result, const WorkDone& done) {
         const double ratio = before > 0.0 ? std::min(change / before, 0.99) : 0.99;
         if (change * ratio / (1.0 - ratio) < kSolved) break;
         before = change;
+        if (result.sweeps == kSweepsForFloor) PFVOX_CHECK(findFloor(values));
     }
+    return {};
+}
+
+Result<void> FaceTracer::findFloor(const Values& values) {
+    const std::uint32_t faces = scene_->faceCount();
     PFVOX_TRY(const std::vector<glm::vec4>, light, get<glm::vec4>(*device_, buffers_.light[source_], faces));
     double sum = 0.0;
     for (const glm::vec4& l : light) sum += static_cast<double>(l.x + l.y + l.z) / 3.0;
     noiseFloor_ = static_cast<float>(std::max(kNoiseFloor * sum / std::max(faces, 1u), 1e-12));
-    return {};
+    return describe(values);
 }
 
 // ---- The light of values ----
@@ -328,8 +336,8 @@ Result<TracedFaces> FaceTracer::run(const WorkDone& done) {
     }
     PFVOX_TRY(const Values, whole, createValues(listFaces(*scene_).clusters, {}));
     PFVOX_CHECK(describe(whole));
-    PFVOX_CHECK(solve(result, done));
-    PFVOX_CHECK(describe(whole));  // knows the floor
+    PFVOX_CHECK(solve(whole, result, done));
+    PFVOX_CHECK(findFloor(whole));
     PFVOX_CHECK(gather(whole, result, done));
     std::vector<std::uint32_t> levels(faces, 0);
     if (settings_.faces->divide) {

@@ -95,7 +95,9 @@ class FaceTracer {
     Result<shared::FaceControl> readControl();
     Result<void> writeControl(const shared::FaceControl& control);
 
-    Result<void> solve(TracedFaces& result, const WorkDone& done);
+    Result<void> solve(const Values& values, TracedFaces& result, const WorkDone& done);
+    /// What counts as dark, from the light so far.
+    Result<void> findFloor(const Values& values);
     Result<void> gather(const Values& values, TracedFaces& result, const WorkDone& done);
     Result<std::vector<std::uint32_t>> divide(const Values& values, TracedFaces& result,
                                               const WorkDone& done);
