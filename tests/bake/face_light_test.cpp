@@ -137,5 +137,67 @@ TEST_F(FaceLightTest, UnderAnEvenSkyAFreeFaceHasAll) {
     expectLight(lit, 2.0, 0.005, [](const shared::FaceRecord&) { return true; });
 }
 
+TEST_F(FaceLightTest, WallsOfOneVoxelDoNotLeak) {
+    // Two rooms, a lamp in one of them.
+    VoxelModel model = hollowBox(glm::ivec3(13, 6, 6));
+    for (int y = 0; y < 6; ++y)
+        for (int z = 0; z < 6; ++z) model.set({6, y, z}, 0);
+    model.set({2, 6, 2}, 1);
+    BakeSettings settings = plain(256);
+    settings.faces->divide = true;
+    const LitFaces lit =
+        bakeFaces(sceneOf(assetOf(std::move(model), {gray(200), gray(120, 20.0)})), settings);
+    double dark = 0.0;
+    double bright = 0.0;
+    for (std::size_t i = 0; i < lit.records.size(); ++i) {
+        const shared::FaceRecord& r = lit.records[i];
+        const bool inside = r.y > 0 && r.y < 7 && r.z > 0 && r.z < 7;
+        if (!inside || (r.instanceAndFace & 7u) / 2 != 0) continue;
+        if (r.x == 7 && (r.instanceAndFace & 1u) == 0) bright = std::max(bright, lit.lightOf(i));
+        if (r.x == 7 && (r.instanceAndFace & 1u) != 0) dark = std::max(dark, lit.lightOf(i));
+    }
+    EXPECT_GT(bright, 0.05);
+    EXPECT_EQ(dark, 0.0);
+}
+
+TEST_F(FaceLightTest, WhatAnotherInstanceCoversHasNoValue) {
+    // Two cubes that share a corner cell: of the faces within the other one nothing can be seen.
+    VoxelModel cube;
+    fillBox(cube, {glm::ivec3(0), glm::ivec3(4)}, [](glm::ivec3) { return std::optional<MaterialIndex>(0); });
+    VoxelAsset asset = assetOf(std::move(cube), {gray(188)});
+    Instance second = asset.instances[0];
+    second.worldFromModel[3] = 0.1 * glm::dvec3(2.0, 0.0, 0.0);
+    asset.instances.push_back(second);
+    LoadedScene scene = sceneOf(std::move(asset));
+    scene.scene.sky = {.zenith = glm::dvec3(1.0), .horizon = glm::dvec3(1.0), .ground = glm::dvec3(1.0)};
+    const LitFaces lit = bakeFaces(scene, plain(128));
+    ASSERT_EQ(lit.records.size(), 2u * 96u);
+    std::size_t covered = 0;
+    for (std::size_t i = 0; i < lit.records.size(); ++i) {
+        if (lit.hasValue(i)) {
+            EXPECT_NEAR(lit.lightOf(i), 1.0, 0.01);
+        } else {
+            ++covered;
+        }
+    }
+    EXPECT_EQ(covered, 2u * 16u);  // the sides that look along x
+}
+
+TEST_F(FaceLightTest, BitsDoNotDependOnDispatches) {
+    VoxelModel model = hollowBox(glm::ivec3(5, 6, 7));
+    model.set({2, 6, 2}, 1);
+    const LoadedScene scene = sceneOf(assetOf(std::move(model), {gray(200), gray(120, 20.0)}));
+    BakeSettings settings = plain(128);
+    settings.faces->divide = true;
+    settings.faces->maxRays = 512;
+    settings.dispatchSeconds = 10.0;
+    const LitFaces whole = bakeFaces(scene, settings);
+    settings.dispatchSeconds = 1e-4;
+    const LitFaces pieces = bakeFaces(scene, settings);
+    EXPECT_EQ(whole.faces.light.levels, pieces.faces.light.levels);
+    EXPECT_EQ(whole.faces.light.values, pieces.faces.light.values);
+    EXPECT_GT(whole.faces.dividedFaces, 0u);
+}
+
 }  // namespace
 }  // namespace pfvox::test
