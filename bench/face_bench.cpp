@@ -21,6 +21,7 @@ using Clock = std::chrono::steady_clock;
 
 struct Options {
     std::string scene;
+    std::string name;  ///< in the lines
     std::vector<std::string> settings;
     std::vector<std::string> probes;
     std::vector<std::string> cameras;
@@ -102,7 +103,8 @@ class Judge {
                 settings.samples = next;
             }
             const VerifyScore score = scoreOf(picture);
-            Json row{{"what", what}, {"camera", name}, {"samples", settings.samples}};
+            Json row{
+                {"what", what}, {"scene", options_.name}, {"camera", name}, {"samples", settings.samples}};
             row.update(jsonOf(score.all));
             row["flip"] = score.meanFlip;
             row["noiseFlip"] = score.noiseFlip;
@@ -159,7 +161,7 @@ Result<void> run(const Options& options) {
         PFVOX_TRY(const gpu::GpuFaces, faces, gpu::GpuFaces::upload(device, scene, traced.light));
         const auto pass = [](const BakePass& p) { return Json{{"rays", p.rays}, {"gpuMs", p.gpuMs}}; };
         std::cout << Json{{"what", text},
-                          {"scene", options.scene},
+                          {"scene", options.name},
                           {"device", device.info().name},
                           {"seconds", seconds},
                           {"sceneSeconds", buildSeconds},
@@ -197,6 +199,7 @@ int main(int argc, char** argv) {
     Options options;
     CLI::App app("Light on faces by its settings, as JSON lines.");
     app.add_option("scene", options.scene, "scene file")->required();
+    app.add_option("--name", options.name, "of the scene, in the lines");
     app.add_option("--set", options.settings, "settings of a bake, name=value,...");
     app.add_option("--probes", options.probes, "baked probes of the scene");
     app.add_option("--camera", options.cameras, "only these");
@@ -207,6 +210,7 @@ int main(int argc, char** argv) {
     app.add_option("--repetitions", options.repetitions, "bakes, of which the fastest counts");
     app.add_flag("--validate", options.validate, "with the validation layer");
     CLI11_PARSE(app, argc, argv);
+    if (options.name.empty()) options.name = options.scene;
     const Result<void> done = run(options);
     if (done) return 0;
     std::cerr << "bench_faces: " << describe(done.error()) << '\n';

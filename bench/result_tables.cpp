@@ -85,6 +85,47 @@ std::string verifyTable(const ResultLines& lines) {
     return table;
 }
 
+// ---- Light on faces: bench_faces ----
+
+std::string faceSpeedTable(const ResultLines& lines) {
+    std::string table =
+        headOf({"scene", "rays a value, at most", "faces", "divided", "values", "sweeps", "billion rays",
+                "billion rays/s", "noise", "at the largest number", "bake, s"},
+               1);
+    for (const Json& line : lines) {
+        if (!line.contains("seconds")) continue;
+        const double rays = line.at("light").at("rays").get<double>();
+        table += rowOf({line.at("scene").get<std::string>(), line.at("what").get<std::string>(),
+                        countText(line.at("faces").get<std::uint64_t>()),
+                        countText(line.at("divided").get<std::uint64_t>()),
+                        countText(line.at("values").get<std::uint64_t>()),
+                        std::to_string(line.at("sweeps").get<int>()), fmt::format("{:.2f}", 1e-9 * rays),
+                        fmt::format("{:.2f}", 1e-6 * rays / line.at("light").at("gpuMs").get<double>()),
+                        fmt::format("{:.2f} %", 100.0 * line.at("noise").get<double>()),
+                        percent(line.at("noisyFraction").get<double>()),
+                        fmt::format("{:.2f}", line.at("seconds").get<double>())});
+    }
+    return table;
+}
+
+std::string faceQualityTable(const ResultLines& lines) {
+    std::string table = headOf({"scene, camera", "light", "without its noise", "trimmed", "brighter",
+                                "reference's noise", "paths", "FLIP", "noise's"},
+                               2);
+    for (const Json& line : lines) {
+        if (!line.contains("camera")) continue;
+        table += rowOf(
+            {fmt::format("{}, {}", line.at("scene").get<std::string>(), line.at("camera").get<std::string>()),
+             line.at("what").get<std::string>(), percent(line.at("error").get<double>()),
+             percent(line.at("trimmed").get<double>()),
+             fmt::format("{:+.1f} %", 100.0 * line.at("bias").get<double>()),
+             percent(line.at("noise").get<double>()), countText(line.at("samples").get<std::uint64_t>()),
+             fmt::format("{:.3f}", line.at("flip").get<double>()),
+             fmt::format("{:.3f}", line.at("noiseFlip").get<double>())});
+    }
+    return table;
+}
+
 // ---- Rays: bench_trace ----
 
 struct View {
@@ -240,6 +281,8 @@ std::optional<ResultLines> readLines(const std::filesystem::path& file) {
 std::string tableOf(const std::string& name, const ResultLines& lines) {
     try {
         if (name == "verify") return verifyTable(lines);
+        if (name == "faces-speed") return faceSpeedTable(lines);
+        if (name == "faces-quality") return faceQualityTable(lines);
         if (name == "trace-models") return modelTable(lines);
         if (name == "trace-bounces") return bouncesTable(lines);
         if (name == "trace-means") return meansTable(lines);
