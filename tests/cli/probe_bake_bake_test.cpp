@@ -119,6 +119,31 @@ TEST_F(ProbeBakeScene, ShardsMergeToTheWhole) {
     EXPECT_EQ(run(tiny({"scene.toml", "-o", "a.pf_probe", "--probes", "7"})).exitCode, 2);
 }
 
+TEST_F(ProbeBakeScene, LightOnFacesIsWhatIsBakedWithoutOptions) {
+    writeScene("scene.toml", "box.pf_vox", kGrid);
+    const ProcessResult baked = run({"scene.toml", "-o", "a.pf_probe", "--samples", "128", "--json"});
+    ASSERT_EQ(baked.exitCode, 0) << baked.err;
+    const json report = json::parse(baked.out);
+    expectSchema("bake", report);
+    EXPECT_EQ(report["faces"]["faces"], 2 * (12 * 12 + 2 * 12 * 6));
+    EXPECT_GE(report["faces"]["values"], report["faces"]["faces"]);
+    const json info = json::parse(run({"info", "--json", "a.pf_probe"}).out);
+    expectSchema("probe-info", info);
+    EXPECT_EQ(info["faces"]["faces"], report["faces"]["faces"]);
+    EXPECT_EQ(info["layers"].size(), 2u) << "irradiance and moments";
+    EXPECT_EQ(run({"validate", "a.pf_probe"}).exitCode, 0);
+    const json again = json::parse(run({"scene.toml", "-o", "a.pf_probe", "--samples", "128", "--json"}).out);
+    EXPECT_EQ(again["status"], "up-to-date");
+    // Parts have chunks and probes; joined they are the whole.
+    for (const char* part : {"0/2", "1/2"}) {
+        const std::string name = std::string(1, part[0]) + ".pf_probe";
+        ASSERT_EQ(run({"scene.toml", "-o", name, "--samples", "128", "--probes", part}).exitCode, 0);
+    }
+    ASSERT_EQ(
+        run({"merge", "1.pf_probe", "0.pf_probe", "-o", "b.pf_probe", "--scene", "scene.toml"}).exitCode, 0);
+    EXPECT_EQ(readText(folder / "a.pf_probe"), readText(folder / "b.pf_probe"));
+}
+
 TEST_F(ProbeBakeScene, PartsOfNMakeUpTheGrid) {
     writeScene("scene.toml", "box.pf_vox", kGrid);
     for (const char* part : {"0/4", "1/4", "2/4", "3/4"}) {

@@ -179,6 +179,62 @@ std::string samplesText(const ProbeBakeSettings& settings) {
                        percentText(static_cast<double>(settings.noiseTarget)));
 }
 
+/// Of the chunks that the file has.
+struct FaceTotals {
+    std::uint64_t faces = 0;
+    std::uint64_t values = 0;
+    std::uint64_t storedBytes = 0;
+    std::optional<double> noise;  ///< mean over the values of which it is known
+
+    explicit FaceTotals(const FaceLightInfo& info) {
+        const std::vector<FaceChunkPlace> places = faceChunkPlaces(info);
+        double noiseSum = 0.0;
+        double judged = 0.0;
+        for (std::uint32_t i = 0; i < info.chunks.size(); ++i) {
+            const FaceChunkRecord& chunk = info.chunks[i];
+            faces += places[info.range.first + i].faceCount;
+            values += chunk.valueCount;
+            storedBytes += chunk.storedBytes;
+            if (!chunk.noise) continue;
+            noiseSum += static_cast<double>(*chunk.noise) * static_cast<double>(chunk.valueCount);
+            judged += static_cast<double>(chunk.valueCount);
+        }
+        if (judged > 0.0) noise = noiseSum / judged;
+    }
+};
+
+std::string facesText(const FaceLightInfo& info) {
+    const FaceTotals totals(info);
+    const FaceBakeSettings& settings = info.settings;
+    std::string text = fmt::format("  light on {}, {}, {} in {}", plural(totals.faces, "face"),
+                                   plural(totals.values, "value"), plural(info.chunks.size(), "chunk"),
+                                   formatBytes(totals.storedBytes));
+    if (totals.noise) text += ", noise " + percentText(totals.noise);
+    return text + fmt::format("\n    {} linked rays a face, {} to {} a value until noise is {}, {}\n",
+                              settings.baseRays, settings.minRays, settings.maxRays,
+                              percentText(static_cast<double>(settings.noiseTarget)),
+                              toString(settings.codec));
+}
+
+Json facesJson(const FaceLightInfo& info) {
+    const FaceTotals totals(info);
+    const FaceBakeSettings& settings = info.settings;
+    return {{"faces", totals.faces},
+            {"values", totals.values},
+            {"instances", info.instances.size()},
+            {"chunks", info.chunks.size()},
+            {"storedBytes", totals.storedBytes},
+            {"noise", orNull(totals.noise)},
+            {"settings",
+             {{"seed", settings.seed},
+              {"baseRays", settings.baseRays},
+              {"minRays", settings.minRays},
+              {"maxRays", settings.maxRays},
+              {"noiseTarget", settings.noiseTarget},
+              {"divide", settings.divide},
+              {"codec", toString(settings.codec)}}}};
+}
+
 std::string headline(const ProbeFileInfo& info) {
     const ProbeFieldInfo& field = info.field;
     const ProbeGrid& grid = field.grid;
@@ -195,6 +251,7 @@ std::string headline(const ProbeFileInfo& info) {
     text += fmt::format("  {}, --seed {}, by {} on {}\n", samplesText(settings), settings.seed,
                         escaped(field.toolName), escaped(field.deviceName));
     text += "  " + probeSettingsText(settings) + "\n";
+    if (info.faces) text += facesText(*info.faces);
     if (info.proximityCounts)
         text +=
             fmt::format("  proximity grid {} x {} x {}, {} with probes\n", info.proximityCounts->x,
@@ -213,6 +270,7 @@ Result<ProbeFileInfo> readProbeFileInfo(const std::filesystem::path& file, const
                        .versionMinor = reader.versionMinor(),
                        .fileBytes = reader.fileBytes(),
                        .proximityCounts = {},
+                       .faces = reader.faces(),
                        .layers = layerSizes(reader),
                        .records = {},
                        .positions = {},
@@ -262,6 +320,7 @@ Json infoJson(const ProbeFileInfo& info) {
     json["shaderHash"] = field.shaderHash.hex();
     json["device"] = field.deviceName;
     json["tool"] = field.toolName;
+    json["faces"] = info.faces ? facesJson(*info.faces) : Json(nullptr);
     json["proximity"] = Json(nullptr);
     if (info.proximityCounts)
         json["proximity"] = {{"counts", vectorJson(*info.proximityCounts)},

@@ -27,7 +27,8 @@ struct ProbeFileInfo {
     std::uint16_t versionMinor = 0;
     std::uint64_t fileBytes = 0;
     std::optional<glm::uvec3> proximityCounts;
-    std::uint64_t coveredCells = 0;     ///< of the proximity grid: name a probe
+    std::uint64_t coveredCells = 0;  ///< of the proximity grid: name a probe
+    std::optional<FaceLightInfo> faces;
     std::vector<LayerSize> layers;      ///< those that the file has
     std::vector<ProbeRecord> records;   ///< of field.range
     std::vector<glm::dvec3> positions;  ///< in the world, metres

@@ -77,7 +77,7 @@ enum class ProbeProfile : std::uint8_t {
 ProbeResolution resolutionOf(ProbeProfile profile);
 /// The profile that has this resolution, else Custom.
 ProbeProfile profileOf(const ProbeResolution& resolution);
-/// "custom", "thesis", "default", "compact".
+/// "custom", "thesis", "probes", "compact".
 std::string_view toString(ProbeProfile profile);
 
 /// How distances become 16-bit codes: round(log(scale * d + 1) / log(scale * far + 1) * 65534).

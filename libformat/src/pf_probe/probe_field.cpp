@@ -41,7 +41,7 @@ std::string_view toString(ProbeLayer layer) {
 }
 
 std::string_view toString(ProbeProfile profile) {
-    constexpr std::array<std::string_view, 4> kNames{"custom", "thesis", "default", "compact"};
+    constexpr std::array<std::string_view, 4> kNames{"custom", "thesis", "probes", "compact"};
     return kNames[static_cast<std::size_t>(profile)];
 }
 
