@@ -89,6 +89,9 @@ FaceInstance faceInstanceOf(const FaceIndex& index) {
 
 std::vector<FaceChunkPlace> faceChunkPlaces(const FaceLightInfo& info) {
     std::vector<FaceChunkPlace> places;
+    std::size_t most = 0;  // so that it takes no more memory than a reader has drawn for it
+    for (const FaceInstance& instance : info.instances) most += instance.faceCounts.size();
+    places.reserve(most);
     for (std::uint32_t i = 0; i < info.instances.size(); ++i) {
         const auto& counts = info.instances[i].faceCounts;
         for (std::uint32_t r = 0; r < counts.size(); ++r) {

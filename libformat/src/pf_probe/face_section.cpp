@@ -83,6 +83,14 @@ Result<StoredChunk> fromFaceChunk(FaceCodec codec, std::uint32_t faceCount,
     return stored;
 }
 
+std::uint64_t bytesOf(const FaceLightInfo& info) {
+    std::uint64_t bytes =
+        info.instances.size() * sizeof(FaceInstance) + info.chunks.size() * sizeof(FaceChunkRecord);
+    for (const FaceInstance& instance : info.instances)
+        bytes += instance.faceCounts.size() * sizeof(std::uint32_t);
+    return bytes;
+}
+
 std::vector<std::uint8_t> faceSectionBytes(const FaceLightInfo& info, std::span<const StoredChunk> chunks) {
     const auto settings = settingEntries(kWalk, info.settings);
     probe_layout::Faces fixed{.facesPerChunk = info.facesPerChunk,

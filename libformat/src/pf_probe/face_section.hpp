@@ -24,6 +24,9 @@ probe_layout::FaceChunk toFaceChunk(const faces::StoredChunk& chunk);
 Result<faces::StoredChunk> fromFaceChunk(FaceCodec codec, std::uint32_t faceCount,
                                          const probe_layout::FaceChunk& chunk);
 
+/// In memory.
+std::uint64_t bytesOf(const FaceLightInfo& info);
+
 /// All of it, or what stands before the chunks: equal for bakes whose chunks fit together.
 std::vector<std::uint8_t> faceSectionBytes(const FaceLightInfo& info,
                                            std::span<const faces::StoredChunk> chunks);

@@ -170,7 +170,7 @@ Result<ProbeField> ProbeFileReader::State::readField() const {
 Result<FaceLight> ProbeFileReader::State::readFaces() const {
     const FaceChunkRange range = head.faces->range;
     std::uint64_t largest = 0;
-    std::uint64_t all = 0;
+    std::uint64_t all = probe::bytesOf(*head.faces);
     for (std::uint32_t chunk = range.first; chunk < range.end; ++chunk) {
         const faces::StoredChunk& stored = chunkAt(chunk);
         largest = std::max(largest, faces::unpackBytes(head.faces->settings.codec, stored));
