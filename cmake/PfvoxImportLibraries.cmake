@@ -22,3 +22,9 @@ set(pfvox_log_level ${CMAKE_MESSAGE_LOG_LEVEL})
 set(CMAKE_MESSAGE_LOG_LEVEL WARNING)
 find_package(OpenVDB 10 REQUIRED COMPONENTS openvdb)
 set(CMAKE_MESSAGE_LOG_LEVEL ${pfvox_log_level})
+
+# Where OpenVDB is used, its headers and those of oneTBB become code of ours.
+if(PFVOX_SANITIZE MATCHES "undefined" AND CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
+  set(pfvox_ignorelist ${CMAKE_CURRENT_LIST_DIR}/undefined-ignorelist.txt)
+  set_property(TARGET OpenVDB::openvdb APPEND PROPERTY INTERFACE_COMPILE_OPTIONS -fsanitize-ignorelist=${pfvox_ignorelist})
+endif()

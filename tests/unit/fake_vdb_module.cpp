@@ -1,13 +1,13 @@
 // A module as another build of pfvox would make it: only the first field of its table has a meaning here.
 #ifdef PFVOX_FAKE_ENTRY
-namespace {
-struct OtherTable {
+namespace pfvox {
+struct VdbModule {
     const char* buildId = "0.0.0-fake";
 };
-constexpr OtherTable kTable;
-}  // namespace
+}  // namespace pfvox
 
-extern "C" const void* pfvoxVdbModule() {
+extern "C" const pfvox::VdbModule* pfvoxVdbModule() {
+    static constexpr pfvox::VdbModule kTable;
     return &kTable;
 }
 #else
