@@ -51,9 +51,9 @@ const std::vector<Row>& rows() {
         {"probe-bake", "", "--color"},
         {"probe-bake", "bake", "--profile", {}, {"--samples", "128"}},
         // What is given is that of probes, and of faces on the devices of these tests.
-        {"probe-bake", "bake", "--noise", {"--noise", "0.02"}, kTiny},
+        {"probe-bake", "bake", "--noise", {"--noise", "0.02"}, {"--profile", "thesis"}},
         {"probe-bake", "bake", "--noise", {"--noise", "0.03"}},
-        {"probe-bake", "bake", "--max-samples", {"--max-samples", "4096"}, kTiny},
+        {"probe-bake", "bake", "--max-samples", {"--max-samples", "4096"}, {"--profile", "thesis"}},
         {"probe-bake", "bake", "--max-samples", {"--max-samples", "512"}},
         {"probe-bake", "bake", "--bounces", {}, kTiny},
         {"probe-bake", "bake", "--seed", {}, kTiny},

@@ -260,16 +260,17 @@ tl::expected<BakeSettings, std::string> settingsOf(const BakeOptions& options, s
         if (!range) return tl::make_unexpected(range.error());
         settings.range = *range;
     }
-    settings.maxSamples = options.samples.value_or(options.maxSamples.value_or(settings.maxSamples));
-    settings.minSamples = options.samples.value_or(settings.minSamples);
     const std::uint32_t batch = settings.faces ? kFaceRayBatch : kSampleBatch;
     for (const std::uint32_t count : {options.samples.value_or(batch), options.maxSamples.value_or(batch)}) {
         if (count % batch != 0)
             return tl::make_unexpected(fmt::format("{} samples: must be a multiple of {}", count, batch));
     }
-    settings.minSamples = std::min(settings.minSamples, settings.maxSamples);
-    if (options.samples) settings.noiseTarget = 0.0f;
-    if (options.noise) settings.noiseTarget = static_cast<float>(*options.noise);
+    if (!settings.faces) {  // those of faces are adaptTo()'s
+        settings.maxSamples = options.samples.value_or(options.maxSamples.value_or(settings.maxSamples));
+        settings.minSamples = std::min(options.samples.value_or(settings.minSamples), settings.maxSamples);
+        if (options.samples) settings.noiseTarget = 0.0f;
+        if (options.noise) settings.noiseTarget = static_cast<float>(*options.noise);
+    }
     settings.maxBounces = options.bounces;
     settings.seed = options.seed;
     settings.filter = options.filter.value_or(filtersByDefault(options.profile));
