@@ -181,7 +181,8 @@ TEST_F(LightPicture, NoSurfaceOfAnySceneIsWithoutIndirectLight) {
         ASSERT_TRUE(baked) << describe(baked.error());
         PFVOX_ASSERT_VALUE(const gpu::Scene, built,
                            gpu::Scene::build(device(), gpu::partsOf(alone), diagnostics));
-        PFVOX_ASSERT_VALUE(const ShownProbes, shown, openProbes(device(), field, alone, built, file, diagnostics));
+        PFVOX_ASSERT_VALUE(const ShownProbes, shown,
+                           openProbes(device(), field, alone, built, file, diagnostics));
         PictureSettings small{
             .width = 128, .height = 96, .samplesPerPixel = 1, .mode = ViewMode::Tiers, .lighting = {}};
         PictureStatistics statistics;

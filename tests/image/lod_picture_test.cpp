@@ -96,7 +96,8 @@ class LodLight : public LodPicture {
         scene.emplace(*std::move(built));
         ASSERT_GT(scene->statistics().lodBytes, 0u);
         const auto field = std::filesystem::path(PFVOX_TESTS_DIR) / "image/golden/hall.pf_probe";
-        auto opened = viewer::openProbes(device(), field, *loaded_, *scene, folder_ / "hall.toml", diagnostics);
+        auto opened =
+            viewer::openProbes(device(), field, *loaded_, *scene, folder_ / "hall.toml", diagnostics);
         ASSERT_TRUE(opened) << describe(opened.error());
         probes_.emplace(*std::move(opened));
     }

@@ -58,12 +58,8 @@ class PathWaves::Recording {
   private:
     void add(const gpu::Dispatch& dispatch, std::uint32_t count, std::uint32_t set) {
         dispatches_.push_back(dispatch);
-        pushes_.push_back({.wave = wave_,
-                           .first = 0,
-                           .count = count,
-                           .set = set,
-                           .reserved0 = 0,
-                           .faces = glm::uvec2(0)});
+        pushes_.push_back(
+            {.wave = wave_, .first = 0, .count = count, .set = set, .reserved0 = 0, .faces = glm::uvec2(0)});
     }
 
     glm::uvec2 wave_;
