@@ -51,7 +51,7 @@ float voxelMetresOf(const LoadedScene& scene);
 
 /// Reads a field and uploads it; light on faces as well, where its models are those of `gpuScene`. Probes
 /// that were baked for another state of the scene are used with the diagnostic "probes-other-scene", which
-/// tells how to bake anew. Errors: those of ProbeFileReader::open (what a file is that is no probe file, and
+/// tells how to bake again. Errors: those of ProbeFileReader::open (what a file is that is no probe file, and
 /// how to make one) and GpuProbes::upload, with `file`.
 Result<ShownProbes> openProbes(gpu::Device& device, const std::filesystem::path& file,
                                const LoadedScene& scene, const gpu::Scene& gpuScene,

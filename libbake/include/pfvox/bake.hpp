@@ -77,7 +77,6 @@ enum class BakeStage : std::uint8_t { Faces, Probes };
 struct BakeProgress {
     BakeStage stage = BakeStage::Probes;
     std::uint64_t faces = 0;         ///< of the scene, where their light is baked
-    double faceNoise = 0.0;          ///< relative, of the last round; 0 before the first
     std::uint64_t probes = 0;        ///< to be baked in all
     std::uint64_t probesDone = 0;    ///< those that the journal had counted
     std::uint64_t probesReused = 0;  ///< of these, taken from the journal

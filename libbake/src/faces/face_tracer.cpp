@@ -20,7 +20,7 @@ constexpr double kNoiseFloor = 0.05;
 constexpr double kSolved = 1e-3;
 /// After so many sweeps it is known how light the scene is, about.
 constexpr std::uint32_t kSweepsForFloor = 2;
-/// Rays of one face are the most that a link's index can count: 2^32 links in all.
+/// Links are counted in 32 bits.
 constexpr std::uint64_t kMostLinks = 0xffffffffull;
 
 bool isSoftware(const gpu::Device& device) {

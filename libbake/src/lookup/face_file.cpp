@@ -23,14 +23,10 @@ class FileOrders {
     std::map<std::pair<const FaceIndex*, std::size_t>, std::vector<std::uint32_t>> known_;
 };
 
-std::size_t valueCountOf(std::uint8_t level) {
-    return faceValuesOf(level);
-}
-
 /// Where the values of each face begin, and the end.
 std::vector<std::uint64_t> firstValues(std::span<const std::uint8_t> levels) {
     std::vector<std::uint64_t> first(levels.size() + 1);
-    for (std::size_t i = 0; i < levels.size(); ++i) first[i + 1] = first[i] + valueCountOf(levels[i]);
+    for (std::size_t i = 0; i < levels.size(); ++i) first[i + 1] = first[i] + faceValuesOf(levels[i]);
     return first;
 }
 

@@ -157,7 +157,7 @@ struct FaceLight {
 /// Whether it can be written: counts, ranges, domains of settings. Errors: BadValue, BadStructure.
 Result<void> checkFaceLightInfo(const FaceLightInfo& info);
 /// The same of a chunk of `faceCount` faces. Errors: BadStructure (another number of levels or values),
-/// BadValue (unknown levels, words with exponent 31, noise that is no number).
+/// BadValue (unknown levels, words with exponent 31, noise that is NaN).
 Result<void> checkFaceChunk(std::uint32_t faceCount, const FaceChunk& chunk, const FaceChunkRecord& record);
 
 }  // namespace pfvox

@@ -55,7 +55,7 @@ class Journal {
     };
 
     /// Opens the journal for this process alone. With `resume`, `found` gets what is in it, of several
-    /// records of one thing the last; else it begins anew. Errors: FileNotWritable, FileNotReadable.
+    /// records of one thing the last; else it starts over. Errors: FileNotWritable, FileNotReadable.
     static Result<Journal> open(const std::filesystem::path& file, const WritePlan& plan, bool resume,
                                 Entries& found, Diagnostics& diagnostics);
 
